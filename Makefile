@@ -147,6 +147,7 @@ check: $(STAMPS)/package $(STAMPS)/check
 	if [ -n "$$bad" ]; then echo "make check found something:$$bad"; exit 1; fi; echo "make check: all is well"
 
 format: $(STAMPS)/check
+	$(BIN)/python tools/rooms.py
 	$(BIN)/ruff format .
 	$(BIN)/ruff check --fix .
 	$(BIN)/clang-format -i $(CPP_FILES)

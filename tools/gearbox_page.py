@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from html import escape
 
-from clutchwork.base.text import counted
+from clutchwork.base.plural import counted
 from clutchwork.gearbox.gearbox import Gearbox, catalogue
 
 INTRODUCTION = """# Gearboxes

@@ -15,7 +15,7 @@ from typing import Any
 import clutchwork as cw
 from clutchwork.declare.schema import REGISTRY, Role, specs
 from clutchwork.laws.bases.stribeck import StribeckCurve
-from clutchwork.page.data import Wanted
+from clutchwork.page.data import PageRequest
 from clutchwork.page.page import page
 from clutchwork.rig.presets import CLUTCH
 
@@ -152,9 +152,9 @@ def write(kind: str, path: Path) -> None:
     path.write_text(page(system, T_END, OPTIONS, wanted(kind)), encoding="utf-8")
 
 
-def wanted(kind: str) -> Wanted:
+def wanted(kind: str) -> PageRequest:
     """What the page of a law has."""
-    return Wanted(["drive.speed"] if kind == "naive_sign" else [], sliders(kind), SHOWN)
+    return PageRequest(["drive.speed"] if kind == "naive_sign" else [], sliders(kind), SHOWN)
 
 
 def _ends(law: Any) -> Iterator[tuple[str, str]]:

@@ -11,9 +11,9 @@ mpl.use("agg")
 import clutchwork as cw
 from clutchwork.declare.registry import REGISTRY, Role
 from clutchwork.declare.schema import specs
-from clutchwork.schematic.cells import Piece
+from clutchwork.schematic.cells import SymbolCell
 from clutchwork.schematic.look import HEAT, SHAFT, VALUE
-from clutchwork.schematic.pen import Pen, Text
+from clutchwork.schematic.pen import SymbolPen, Text
 from clutchwork.schematic.picture import Schematic
 from clutchwork.schematic.sheet import Sheet
 from clutchwork.schematic.symbols.symbol import LEFT, RIGHT, Drawn
@@ -49,12 +49,12 @@ def symbols() -> Schematic:
         x, y = WIDE * (number % COLUMNS), -TALL * (number // COLUMNS)
         marks = [mark.moved(x, y) for mark in _symbol(kind, kinds[kind])]
         text = Text(x, y - 33.0, kind, VALUE, "", False)._replace(colour="#1A1A1A")
-        made.pieces.append(Piece(kind, "element", marks, [text]))
+        made.pieces.append(SymbolCell(kind, "element", marks, [text]))
     return Schematic("symbols of elements", made)
 
 
 def _symbol(kind: str, cls: type) -> list:
-    symbol, pen = OWN[kind], Pen()
+    symbol, pen = OWN[kind], SymbolPen()
     ports = [item.name for item, _ in specs(cls, "port")]
     flows = ["hot", "cold"] if REGISTRY[Role.FLOW].get(kind) else []
     # what stands at one shaft against the housing is drawn so

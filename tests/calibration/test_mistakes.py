@@ -35,7 +35,7 @@ def refused(**given):
         ({"subject_to": cw.limit("c1.heat", 5.0, 4.0)}, "limit of c1.heat is 5.0 and 4.0"),
         ({"solver": "sqp"}, "solver is 'sqp'; did you mean 'slsqp'? give 'slsqp' or 'trust-constr' or 'ipopt'"),
         ({"robust": "best"}, "robust is 'best'"),
-        ({"starts": 0}, "starts is 0: give a whole number from 1 on"),
+        ({"starts": 0}, "starts is 0: give a whole number of at least 1"),
         ({"tolerance": 2.0}, "tolerance is 2.0"),
         ({"file": 5}, "file: 5 is not a path"),
         ({"free": {"c1.gain": (6e-4, 9e-4)}}, "the model has 0.0005 m3, outside of 0.0006 to 0.0009 m3; give bounds"),

@@ -57,7 +57,7 @@ def test_levers_with_other_teeth_are_laid_out_anew() -> None:
 def test_what_is_left_to_pay_is_the_way_around_what_is_solid() -> None:
     board = Board(7, 5)
     board.block([(3, 1), (3, 2), (3, 3)])
-    task = search.Task(("a", "a"), [(1, 1)], [(5, 1)], limit=20.0)
+    task = search.Query(("a", "a"), [(1, 1)], [(5, 1)], limit=20.0)
     least = search._least(board, task)
     assert least[5, 1] == 0.0
     # over the wall of three
@@ -66,4 +66,4 @@ def test_what_is_left_to_pay_is_the_way_around_what_is_solid() -> None:
     assert found is not None
     assert len(found.before) - 1 == least[1, 1]
     # two bends before the wall and two behind it are 12 more
-    assert search.find(board, search.Task(("a", "a"), [(1, 1)], [(5, 1)], limit=15.0)) is None
+    assert search.find(board, search.Query(("a", "a"), [(1, 1)], [(5, 1)], limit=15.0)) is None

@@ -9,7 +9,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from clutchwork.diagrams.marks import Label, Line
+from clutchwork.diagrams.marks import Label, Polyline
 from clutchwork.diagrams.picture import svg_text
 from clutchwork.diagrams.speed import chart, plan
 from clutchwork.diagrams.speed.spread import spread
@@ -27,13 +27,13 @@ def test_lines_of_gears_go_through_the_speeds(name: str) -> None:
     uprights = {
         (mark.points[0][0], mark.what)
         for mark in marks
-        if isinstance(mark, Line) and mark.what in [*box.members, HOUSING]
+        if isinstance(mark, Polyline) and mark.what in [*box.members, HOUSING]
     }
     ladders = plan.ladders(box, 0.0)
     _, _, scale = plan.span(ladders, states)
     assert len(uprights) == sum(len(one.columns) for one in ladders)
     for state in states:
-        lines = [mark for mark in marks if isinstance(mark, Line) and mark.what == f"gear {state.gear}"]
+        lines = [mark for mark in marks if isinstance(mark, Polyline) and mark.what == f"gear {state.gear}"]
         assert len(lines) == len(ladders)
         for line in lines:
             (x1, y1), (x2, y2) = line.points

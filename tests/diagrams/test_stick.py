@@ -8,7 +8,7 @@ from xml.etree import ElementTree
 import pytest
 from hypothesis import given, settings
 
-from clutchwork.diagrams.marks import Label, Line
+from clutchwork.diagrams.marks import Label, Polyline
 from clutchwork.diagrams.picture import svg_text
 from clutchwork.diagrams.power import sources
 from clutchwork.diagrams.stick.layout import _best, layout
@@ -51,7 +51,7 @@ def test_box(name: str) -> None:
         texts = [text for mark in marks if isinstance(mark, Label) for text in mark.text.split(" + ")]
         assert [text for text in wanted if texts.count(text) < wanted.count(text)] == []
         assert min(mark.size for mark in marks if isinstance(mark, Label)) >= 9.0
-        assert {mark.what for mark in marks if isinstance(mark, Line)} >= set(box.members)
+        assert {mark.what for mark in marks if isinstance(mark, Polyline)} >= set(box.members)
         assert ElementTree.fromstring(svg_text(name, marks)).tag.endswith("svg")
 
 

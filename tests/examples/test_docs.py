@@ -182,6 +182,15 @@ def test_every_rule_has_its_number_and_the_code_that_follows_it(name: str) -> No
     assert {int(number) for numbers in cited for number in re.findall(r"\d+", numbers)} == set(rules)
 
 
+def test_contributing_lists_the_rooms_that_are_enforced(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.syspath_prepend(ROOT / "tools")
+    import rooms
+
+    floors, text = rooms.floors(), rooms.PAGE.read_text(encoding="utf-8")
+    assert sum(map(len, floors)) == len(re.findall(r"^ {6}\w+/ +\d+  \w", text, re.MULTILINE)) > 20
+    assert rooms.page() == text, "run make format"
+
+
 def test_the_rooms_that_contributing_names_are_there() -> None:
     page = (ROOT / "CONTRIBUTING.md").read_text(encoding="utf-8")
     rooms = page.partition("## Find the room")[2].partition("\n## ")[0]

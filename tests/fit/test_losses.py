@@ -10,7 +10,7 @@ from scipy.optimize import least_squares
 
 import clutchwork as cw
 from clutchwork.fit import FitError, Record, fit_law, fit_records
-from clutchwork.fit.losses import LOSSES, Loss
+from clutchwork.fit.losses import LOSSES, Penalty
 from support import measured_discs as two
 from support import rig_data
 
@@ -69,10 +69,10 @@ def test_it_is_the_loss_of_scipy(kind: str) -> None:
         return x @ p - y
 
     known = least_squares(residuals, [0.0, 0.0], loss=kind, f_scale=0.7, xtol=1e-14, ftol=1e-14, gtol=1e-14)
-    own = Loss(kind).searched(np.full(40, 0.7))
+    own = Penalty(kind).searched(np.full(40, 0.7))
     found = least_squares(residuals, [0.0, 0.0], loss=own, xtol=1e-14, ftol=1e-14, gtol=1e-14)
     assert found.x == pytest.approx(known.x, rel=1e-6)
-    assert 0.5 * np.sum(Loss(kind).costs(residuals(found.x), 0.7)) == pytest.approx(known.cost, rel=1e-9)
+    assert 0.5 * np.sum(Penalty(kind).costs(residuals(found.x), 0.7)) == pytest.approx(known.cost, rel=1e-9)
 
 
 @pytest.mark.parametrize("kind", ROBUST)

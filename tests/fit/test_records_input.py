@@ -61,7 +61,7 @@ def test_a_record_that_cannot_be_used_is_refused(record: Record, words: str) -> 
         ({"bounds": {"load.inertia": 1.0}}, r"give a pair: \(lower, upper\)"),
         ({"records": []}, "records are empty"),
         ({"records": [ONE.measured["load.speed"]]}, r"give each as a Record\(time, measured\)"),
-        ({"starts": 0}, "starts is 0; give a whole number from 1 on"),
+        ({"starts": 0}, "starts is 0; give a whole number of at least 1"),
         ({"confidence": 95.0}, "confidence is 95.0; give a number between 0 and 1"),
         ({"records": replace(ONE, start={"load.inertia": 1.0})}, r"record 1 sets it; give own=\['load.inertia'\]"),
         (

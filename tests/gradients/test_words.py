@@ -12,8 +12,8 @@ import clutchwork as cw
 from clutchwork.assembly.masses import masses
 from clutchwork.base.errors import ModelError
 from clutchwork.declare.schema import Role
-from clutchwork.gradients.packed import made, with_masses, words_of
 from clutchwork.gradients.parameters import parameters
+from clutchwork.gradients.system_words import made, with_masses, words_of
 from clutchwork.gradients.words import Words
 from support import free_numbers, random_drivelines, random_parts, random_stops, six_speed
 

@@ -15,7 +15,7 @@ import pytest
 
 import clutchwork as cw
 from clutchwork.base.errors import MOST_LINES, ModelFileError, near
-from clutchwork.base.shown import MOST_NAMES, listed, printable, shortened, shown
+from clutchwork.base.quote import MOST_NAMES, listed, printable, quote, shortened
 from clutchwork.command.main import main
 from clutchwork.declare.options import MOST_ROWS, Options
 from clutchwork.files import model_file
@@ -160,7 +160,7 @@ def test_a_mistake_stands_with_its_line(tmp_path):
 
 def test_values_are_shown_short():
     for value in (10**400, 10**9000, "x" * 10**6, [[[[[[1]]]]]], list(range(10**6)), {"a": "b" * 999}):
-        assert len(shown(value)) < 400
+        assert len(quote(value)) < 400
 
 
 def test_texts_are_shown_safely():

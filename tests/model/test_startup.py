@@ -9,14 +9,14 @@ import sys
 from support.project import ROOT
 
 IMPORT = {
-    *("base", "base.classes", "base.errors", "base.frozen", "base.shown", "base.text"),
-    *("declare", "declare.calls", "declare.core", "declare.docs", "declare.given", "declare.hooks", "declare.layout"),
+    *("base", "base.classes", "base.errors", "base.frozen", "base.quote", "base.plural"),
+    *("declare", "declare.calls", "declare.core", "declare.docs", "declare.to_si", "declare.hooks", "declare.layout"),
     *("declare.node", "declare.pints", "declare.quantity", "declare.registry", "declare.schema"),
-    *("declare.speech", "declare.unit_table", "declare.unit_words", "declare.units", "declare.wanted"),
+    *("declare.wording", "declare.unit_table", "declare.unit_words", "declare.units", "declare.expected_value"),
     *("face", "face.names", "_core"),
 }
 SIMULATE = {
-    *("base.kept", "results", "results.events", "results.exports", "results.trajectory"),
+    *("base.memoize", "results", "results.events", "results.exports", "results.trajectory"),
     *("run", "run.begin", "run.control", "run.jumps", "run.record", "run.settings", "run.simulation"),
 }
 # rooms with a command of their own

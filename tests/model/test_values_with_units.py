@@ -12,9 +12,9 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 import clutchwork as cw
-from clutchwork.declare.given import PARTNERS
 from clutchwork.declare.node import Component, Node
 from clutchwork.declare.schema import Role, Spec, specs
+from clutchwork.declare.to_si import PARTNERS
 from clutchwork.declare.units import parse
 from clutchwork.model.components import component_problems
 from clutchwork.model.fields import object_problems

@@ -9,7 +9,7 @@ import pytest
 
 import clutchwork as cw
 from clutchwork.base.errors import UnknownName
-from clutchwork.base.text import counted
+from clutchwork.base.plural import counted
 from clutchwork.declare.schema import REGISTRY, Role, specs
 from clutchwork.model.components import component_problems
 from clutchwork.results.energy import EnergyBalance

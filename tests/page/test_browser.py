@@ -10,7 +10,7 @@ import pytest
 
 import clutchwork as cw
 from clutchwork.command.main import main
-from clutchwork.page.data import Wanted
+from clutchwork.page.data import PageRequest
 from clutchwork.page.page import page
 from clutchwork.run.settings import merged
 from support import example_models
@@ -33,7 +33,7 @@ def box_page(name: str, path: Path) -> Path:
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", cw.ModelWarning)
         system = in_gear(box, next(iter(box.ratios)), torque=300.0).assemble()
-    path.write_text(page(system, 0.5, cw.Options(), Wanted()), encoding="utf-8")
+    path.write_text(page(system, 0.5, cw.Options(), PageRequest()), encoding="utf-8")
     return path
 
 
@@ -41,7 +41,7 @@ def example_page(name: str, path: Path) -> Path:
     """The page of an example that is a program."""
     system, t_end = example_models.model(name)
     _, options = merged(system.settings, {"t_end": t_end})
-    path.write_text(page(system, t_end, options, Wanted()), encoding="utf-8")
+    path.write_text(page(system, t_end, options, PageRequest()), encoding="utf-8")
     return path
 
 

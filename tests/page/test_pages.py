@@ -18,7 +18,7 @@ import pytest
 import clutchwork as cw
 from clutchwork.command.main import main
 from clutchwork.page import html, static
-from clutchwork.page.data import Wanted, data_of
+from clutchwork.page.data import PageRequest, data_of
 from support.project import ROOT
 from support.transmissions import in_gear
 
@@ -59,7 +59,7 @@ def test_every_example_has_a_page(model: Path, tmp_path: Path, capsys: pytest.Ca
 @pytest.mark.usefixtures("built")
 def test_a_page_runs_nothing_but_its_own_script() -> None:
     run = braked().simulate(1.0)
-    text = html.html(data_of(run.system, 1.0, run.options, Wanted()), "braked")
+    text = html.html(data_of(run.system, 1.0, run.options, PageRequest()), "braked")
     (policy,) = re.findall(r'Content-Security-Policy" content="([^"]*)"', text)
     assert policy.startswith("default-src 'none'; script-src 'sha256-")
     assert "unsafe-inline" not in policy
@@ -85,7 +85,7 @@ def test_names_are_words_whatever_they_hold(tmp_path: Path) -> None:
 
 def test_numbers_of_a_table_are_those_that_are_dragged() -> None:
     system = braked(pressure=cw.Table([(0.0, 0.0), (0.5, 2e5)])).assemble()
-    data = data_of(system, 1.0, cw.Options(), Wanted())
+    data = data_of(system, 1.0, cw.Options(), PageRequest())
     (table,) = data["tables"]
     assert (table["name"], table["unit"], table["points"]) == ("b.pressure", "Pa", [[0.0, 0.0], [0.5, 2e5]])
     assert [slider["name"] for slider in data["sliders"]] == ["b.gain", "b.friction.kinetic", "b.friction.static"]
@@ -96,7 +96,7 @@ def test_numbers_of_a_table_are_those_that_are_dragged() -> None:
 def test_numbers_of_a_gearbox_have_their_place_in_the_model_file() -> None:
     """What the file does not say is put where it would say it."""
     system = in_gear(cw.Gearbox.load("ford-aode"), "1").assemble()
-    paths = data_of(system, 0.5, cw.Options(), Wanted())["paths"]
+    paths = data_of(system, 0.5, cw.Options(), PageRequest())["paths"]
     assert paths["gearbox.FWD.pressure"] == [["element", 0, "shift", "FWD", "pressure", "points"]]
     assert paths["gearbox.FWD.gain"] == [["element", 0, "shift", "FWD", "gain"]]
 
@@ -110,7 +110,7 @@ def test_numbers_of_a_gearbox_have_their_place_in_the_model_file() -> None:
     ],
 )
 def test_what_is_straight_between_knots_is_dragged(pressure: Any, points: Any) -> None:
-    data = data_of(braked(pressure=pressure).assemble(), 1.0, cw.Options(), Wanted(["b.pressure"]))
+    data = data_of(braked(pressure=pressure).assemble(), 1.0, cw.Options(), PageRequest(["b.pressure"]))
     found = np.array(data["tables"][0]["points"])
     # the first knot may be before the run
     assert found[:, 1] == pytest.approx([value for _, value in points])
@@ -120,23 +120,23 @@ def test_what_is_straight_between_knots_is_dragged(pressure: Any, points: Any) -
 def test_a_column_of_a_file_is_dragged(tmp_path: Path) -> None:
     (tmp_path / "record.csv").write_text("time,p\n0,0\n0.5,2e5\n1,1e5\n", encoding="utf-8")
     column = cw.Column(str(tmp_path / "record.csv"), "p")
-    data = data_of(braked(pressure=column).assemble(), 1.0, cw.Options(), Wanted(["b.pressure"]))
+    data = data_of(braked(pressure=column).assemble(), 1.0, cw.Options(), PageRequest(["b.pressure"]))
     assert data["tables"][0]["points"] == [[0.0, 0.0], [0.5, 2e5], [1.0, 1e5]]
 
 
 def test_ends_of_a_slider_have_units() -> None:
-    data = data_of(braked().assemble(), 1.0, cw.Options(), Wanted([], ["b.pressure=1 bar:5 bar", "b.gain"]))
+    data = data_of(braked().assemble(), 1.0, cw.Options(), PageRequest([], ["b.pressure=1 bar:5 bar", "b.gain"]))
     assert [(one["values"][0], one["values"][-1]) for one in data["sliders"]] == [(1e5, 5e5), (0.5e-4, 2e-4)]
 
 
 def test_a_page_says_that_python_goes_on() -> None:
-    data = data_of(braked().assemble(), 1.0, cw.Options(max_steps=10**6), Wanted())
+    data = data_of(braked().assemble(), 1.0, cw.Options(max_steps=10**6), PageRequest())
     assert data["options"]["max_steps"] == 30_000
     assert ["too_many_steps", "a page ends after 30000 steps", "Python goes on"] in data["statuses"]
 
 
 def test_a_constant_pressure_has_two_knots() -> None:
-    data = data_of(braked().assemble(), 1.0, cw.Options(), Wanted())
+    data = data_of(braked().assemble(), 1.0, cw.Options(), PageRequest())
     assert data["tables"][0]["points"] == [[0.0, 2e5], [1.0, 2e5]]
 
 
@@ -146,7 +146,10 @@ def test_a_constant_pressure_has_two_knots() -> None:
         ({"drag": ["b.pressur"]}, "drag: 'b.pressur' cannot be dragged"),
         ({"sliders": ["b.gainn"]}, "slider: .*gainn"),
         ({"sliders": ["b.gain=3:1"]}, "b.gain: '3:1' are not two ends"),
-        ({"sliders": ["disc.inertia", "disc.inertia=1:2"]}, "disc.inertia is turned by 'disc.inertia' and 'disc.iner"),
+        (
+            {"sliders": ["disc.inertia", "disc.inertia=1:2"]},
+            "disc.inertia has two sliders, 'disc.inertia' and 'disc.iner",
+        ),
         ({"sliders": ["b.*tic, disc.inertia"]}, "different units, .*disc.inertia in kg m2; give a slider for each"),
         ({"sliders": ["*.gainn"]}, "'\\*.gainn' fits no number of this driveline"),
         ({"show": ["nothing.*"]}, "nothing"),
@@ -154,7 +157,7 @@ def test_a_constant_pressure_has_two_knots() -> None:
 )
 def test_what_cannot_be_on_a_page_is_said(wanted: dict[str, Any], said: str) -> None:
     with pytest.raises((cw.UseError, cw.UnknownName), match=said):
-        data_of(braked().assemble(), 1.0, cw.Options(), Wanted(**wanted))
+        data_of(braked().assemble(), 1.0, cw.Options(), PageRequest(**wanted))
 
 
 FEELS = ["Acceleration of the output", "Jerk of the output"]
@@ -174,7 +177,7 @@ FEELS = ["Acceleration of the output", "Jerk of the output"]
 )
 def test_how_the_output_feels_is_there_where_it_is_moved_or_asked_for(drag: Any, show: Any, titles: list[str]) -> None:
     """A pressure is dragged, or nothing is; the jerk over the heat follows the jerk."""
-    data = data_of(braked().assemble(), 1.0, cw.Options(), Wanted(drag, ["b.gain"], show))
+    data = data_of(braked().assemble(), 1.0, cw.Options(), PageRequest(drag, ["b.gain"], show))
     assert [panel["title"] for panel in data["panels"]] == titles
     assert ("disc.jerk" in data["signals"]) == any(title.startswith("Jerk") for title in titles)
     # what is felt follows from the acceleration
@@ -193,10 +196,10 @@ def test_pages_of_friction_show_no_jerk(name: str, tmp_path: Path, monkeypatch: 
 
 
 def test_names_may_have_the_word_of_a_loop() -> None:
-    data = data_of(braked(shaft="a over b").assemble(), 1.0, cw.Options(), Wanted([], [], ["a over b.speed"]))
+    data = data_of(braked(shaft="a over b").assemble(), 1.0, cw.Options(), PageRequest([], [], ["a over b.speed"]))
     assert (data["loops"], data["panels"][0]["names"]) == ([], ["a over b.speed"])
     over = ["b.torque over a over b.speed", "a over b.speed over b.torque"]
-    data = data_of(braked(shaft="a over b").assemble(), 1.0, cw.Options(), Wanted([], [], over))
+    data = data_of(braked(shaft="a over b").assemble(), 1.0, cw.Options(), PageRequest([], [], over))
     assert data["loops"] == [{"y": "b.torque", "x": "a over b.speed"}, {"y": "a over b.speed", "x": "b.torque"}]
 
 

@@ -13,7 +13,7 @@ import pytest
 
 import clutchwork as cw
 from clutchwork.declare.layout import CAUSES, MODES, STATUS
-from clutchwork.page.data import Wanted, data_of
+from clutchwork.page.data import PageRequest, data_of
 from clutchwork.page.html import as_json
 from clutchwork.run.settings import merged
 from support import example_models
@@ -36,7 +36,7 @@ def page_data(name: str, sliders: tuple[str, ...] | None = None) -> dict[str, An
     """What a page of an example holds."""
     system, t_end = model_of(name)
     _, options = merged(system.settings, {"t_end": t_end})
-    data: dict[str, Any] = json.loads(as_json(data_of(system, t_end, options, Wanted(sliders=sliders))))
+    data: dict[str, Any] = json.loads(as_json(data_of(system, t_end, options, PageRequest(sliders=sliders))))
     return data
 
 

@@ -14,7 +14,7 @@ from clutchwork.assembly.system import System
 from clutchwork.model.changes import named, target, unit_of
 from clutchwork.page import pairs
 from clutchwork.page import sliders as page
-from clutchwork.page.data import Wanted, data_of
+from clutchwork.page.data import PageRequest, data_of
 from support.project import ROOT
 
 # over the largest that a signal becomes: as in test_parity
@@ -35,7 +35,7 @@ def braked(gains: tuple[float, float] = (1e-4, 1e-4), law: cw.Law = LAW) -> cw.S
 
 def page_data(system: cw.System, *sliders: str, t_end: float = 1.0) -> dict[str, Any]:
     """What a page with sliders holds."""
-    return data_of(system, t_end, cw.Options(), Wanted(sliders=sliders))
+    return data_of(system, t_end, cw.Options(), PageRequest(sliders=sliders))
 
 
 def same(system: cw.System, data: dict[str, Any], values: list[float], found: Any, names: list[str]) -> None:

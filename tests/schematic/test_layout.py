@@ -10,7 +10,7 @@ import pytest
 
 import clutchwork as cw
 from clutchwork.schematic.diagram import diagram
-from clutchwork.schematic.moment import Moment
+from clutchwork.schematic.moment import Snapshot
 from clutchwork.schematic.picture import Schematic
 from clutchwork.schematic.sheet import sheet
 from support import cases, random_drivelines, random_large, schematics, six_speed
@@ -128,7 +128,7 @@ def _on(point: tuple[float, float], piece: tuple) -> bool:
 @pytest.mark.parametrize("name", list(MODELS))
 def test_elements_stand_between_what_they_join(name: str) -> None:
     # in one row: folding goes on at the left
-    made = sheet(diagram(MODELS[name]._model), Moment(), width=1e6)
+    made = sheet(diagram(MODELS[name]._model), Snapshot(), width=1e6)
     x = {(piece.what == "heat", piece.name): _middle(piece) for piece in made.pieces}
     for thing in diagram(MODELS[name]._model).elements:
         if thing.what == "element" and len(thing.nodes) > 1:

@@ -8,8 +8,8 @@ import pytest
 
 import clutchwork as cw
 from clutchwork.declare.schema import Role, specs
-from clutchwork.schematic.moment import Moment
-from clutchwork.schematic.pen import Pen, Stroke, around
+from clutchwork.schematic.moment import Snapshot
+from clutchwork.schematic.pen import Stroke, SymbolPen, around
 from clutchwork.schematic.sheet import Sheet
 from clutchwork.schematic.symbols import table
 from clutchwork.schematic.symbols.contacts import clutch, cone, freewheel
@@ -104,7 +104,7 @@ def test_a_freewheel_points_from_what_drives_to_what_may_run_ahead(forward: bool
 def test_states_differ_in_black_and_white(draw: Any) -> None:
     shapes = []
     for state in ("locked", "slipping", "open"):
-        pen = Pen()
+        pen = SymbolPen()
         draw(pen, Drawn(None, {"a": LEFT, "b": RIGHT}, state=state))
         halo = {"#CFE6F7", "#FCE4D0"}
         strokes = [m for m in pen.marks if isinstance(m, Stroke) and m.look.fill not in halo]
@@ -115,7 +115,7 @@ def test_states_differ_in_black_and_white(draw: Any) -> None:
 
 
 def test_nothing_is_said_where_there_is_no_run() -> None:
-    moment = Moment()
+    moment = Snapshot()
     d = cw.Driveline.from_dict(samples.driveline(cw.Clutch).to_dict())
     from clutchwork.schematic.diagram import diagram
 

@@ -144,7 +144,7 @@ def test_values_of_any_kind() -> None:
 
 WRONG: dict[str, tuple[Any, str]] = {
     "no distributions": (lambda: cw.design({}, 10), "vary is {}"),
-    "no count": (lambda: cw.design({"x": (0, 1)}, 0), "count is 0: give a whole number from 1 on"),
+    "no count": (lambda: cw.design({"x": (0, 1)}, 0), "count is 0: give a whole number of at least 1"),
     "seed": (lambda: cw.design({"x": (0, 1)}, 5, seed=-1), "seed is -1"),
     "method": (lambda: cw.design({"x": (0, 1)}, 5, method="sobl"), "did you mean 'sobol'"),
     "second order": (lambda: cw.design({"x": (0, 1)}, 5, second_order=True), "method='saltelli' alone"),

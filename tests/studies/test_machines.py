@@ -18,13 +18,13 @@ pytest.importorskip("pyarrow")
 pytest.importorskip("scipy")
 psutil = pytest.importorskip("psutil")
 pytestmark = pytest.mark.filterwarnings("ignore")
-ENGINES = {"ray": "ray", "dask": "distributed"}
+EXECUTORS = {"ray": "ray", "dask": "distributed"}
 
 
-@pytest.fixture(params=ENGINES)
+@pytest.fixture(params=EXECUTORS)
 def on(request: pytest.FixtureRequest) -> Iterator[str]:
-    """An engine that leaves no process behind."""
-    pytest.importorskip(ENGINES[request.param])
+    """An executor that leaves no process behind."""
+    pytest.importorskip(EXECUTORS[request.param])
     before = set(psutil.Process().children(recursive=True))
     yield request.param
     left = set(psutil.Process().children(recursive=True)) - before
@@ -86,10 +86,10 @@ def test_a_sweep_has_the_same_bits(on: str) -> None:
     expected, done = cw.sweep(scattered.discs(), **given), list[int]()
     # a rule between two values is seen by the worker that has both
     odd = {"c1.friction.static": [0.2] * 100, "c1.friction.kinetic": [0.1] * 50 + [0.15] * 49 + [0.25]}
-    with running(on) as engine:
-        found = cw.sweep(scattered.discs(), **given, on=engine, progress=lambda one, _: done.append(one))
+    with running(on) as executor:
+        found = cw.sweep(scattered.discs(), **given, on=executor, progress=lambda one, _: done.append(one))
         with pytest.raises(cw.ModelError, match="is below the kinetic coefficient"):
-            cw.sweep(scattered.discs(), 1.0, vary=cw.variants(odd), outputs="load.speed", on=engine)
+            cw.sweep(scattered.discs(), 1.0, vary=cw.variants(odd), outputs="load.speed", on=executor)
     for name in expected.names:
         assert found[name].tobytes() == expected[name].tobytes()
     assert found.codes.tolist() == expected.codes.tolist()

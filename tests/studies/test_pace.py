@@ -8,9 +8,9 @@ from typing import Any
 
 import pytest
 
-from clutchwork.engines import pace
-from clutchwork.engines.engine import Stopped
-from clutchwork.engines.threads import Threads
+from clutchwork.executors import pace
+from clutchwork.executors.executor import Stopped
+from clutchwork.executors.threads import Threads
 
 
 class Costly:

@@ -11,7 +11,7 @@ import clutchwork as cw
 from clutchwork.base.errors import ModelError
 from clutchwork.gradients.differentiable import Differentiable
 from clutchwork.gradients.exact import Exact
-from clutchwork.gradients.stencils import weights
+from clutchwork.gradients.finite_differences import weights
 
 # widths of the differences, of the scale of a number; the best of them counts
 WIDTHS = (1e-3, 2e-4, 4e-5)

@@ -6,7 +6,7 @@ from collections.abc import Iterator, Sequence
 from itertools import combinations, pairwise
 from typing import Any
 
-from clutchwork.diagrams.marks import Label, Line
+from clutchwork.diagrams.marks import Label, Polyline
 from clutchwork.diagrams.stick.lines import needed
 from clutchwork.diagrams.stick.looks import Scene
 from clutchwork.gearbox.gear_set import HOUSING
@@ -22,7 +22,7 @@ def struck_labels(marks: Sequence[Any]) -> list[Any]:
     """Labels with a line through them."""
     labels = [(mark, mark.box) for mark in marks if isinstance(mark, Label)]
     found = []
-    for line in (mark for mark in marks if isinstance(mark, Line)):
+    for line in (mark for mark in marks if isinstance(mark, Polyline)):
         near = [(label, box) for label, box in labels if box.overlaps(line.box, 0.2)]
         if near:
             bits = list(pieces(line))
@@ -32,7 +32,7 @@ def struck_labels(marks: Sequence[Any]) -> list[Any]:
     return found
 
 
-def pieces(line: Line) -> Iterator[Any]:
+def pieces(line: Polyline) -> Iterator[Any]:
     """Boxes of the straight parts of a line; a slanted one in short bits."""
     points = [*line.points, line.points[0]] if line.closed else line.points
     for (a, b), (c, d) in pairwise(points):
@@ -40,12 +40,12 @@ def pieces(line: Line) -> Iterator[Any]:
         for n in range(count):
             start = (a + (c - a) * n / count, b + (d - b) * n / count)
             end = (a + (c - a) * (n + 1) / count, b + (d - b) * (n + 1) / count)
-            yield Line((start, end), width=line.width).box
+            yield Polyline((start, end), width=line.width).box
 
 
 def touching_members(box: Any, marks: Sequence[Any]) -> list[Any]:
     """Lines of different members that touch as they are drawn."""
-    lines = [mark for mark in marks if isinstance(mark, Line) and mark.what in box.members]
+    lines = [mark for mark in marks if isinstance(mark, Polyline) and mark.what in box.members]
     pairs = [(a, b) for a, b in combinations(lines, 2) if a.what != b.what and a.box.overlaps(b.box)]
     return [
         (a.what, b.what, a.points, b.points)

@@ -20,8 +20,8 @@ import numpy as np
 
 import clutchwork as cw
 from clutchwork.gradients.exact import Exact
+from clutchwork.gradients.finite_differences import weights
 from clutchwork.gradients.lines import lines
-from clutchwork.gradients.stencils import weights
 from clutchwork.sweeps.outputs import Extreme, asked
 from support import by_differences, free_numbers
 from support.by_differences import TIGHT

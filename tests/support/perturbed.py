@@ -8,7 +8,7 @@ import numpy as np
 
 import clutchwork as cw
 from clutchwork.assembly.records import frozen
-from clutchwork.linear.chosen import Given, chosen_inputs
+from clutchwork.linear.chosen import Excitation, chosen_inputs
 from clutchwork.linear.equations import Equations, equations
 from clutchwork.linear.instant import Instant, instant_of
 from clutchwork.linear.motion import Motion
@@ -40,7 +40,7 @@ class Standing:
         problems: list[str] = []
         given = chosen_inputs(instant.system, None, problems)
         tied = np.abs(self.motion.free.ties).max(axis=0, initial=0.0)
-        self.given: list[Given] = [one for one in given if one.motion < 0 or not tied[one.motion]]
+        self.given: list[Excitation] = [one for one in given if one.motion < 0 or not tied[one.motion]]
         self.linear: Equations = equations(self.motion, self.given, [], [])
         nodes = [node.name for node in instant.system.nodes]
         self.independent = [nodes.index(name) for name in instant.system.independent]

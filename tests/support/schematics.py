@@ -8,7 +8,7 @@ from itertools import combinations
 import numpy as np
 
 import clutchwork as cw
-from clutchwork.schematic.pen import Box, Stroke, Text, around
+from clutchwork.schematic.pen import Rect, Stroke, Text, around
 from clutchwork.schematic.sheet import Sheet
 
 LINING = cw.Coulomb(static=0.12, kinetic=0.1)
@@ -149,14 +149,14 @@ def overlaps(sheet: Sheet, rim: float = 0.3) -> list[str]:
     return found
 
 
-def _lines(sheet: Sheet) -> Iterator[tuple[str, Box]]:
+def _lines(sheet: Sheet) -> Iterator[tuple[str, Rect]]:
     for wire in sheet.wires:
         for piece in wire.pieces:
             yield wire.node, _thick(Stroke(piece, False, wire.look).box)
 
 
-def _thick(box: Box) -> Box:
-    return Box(box.left - 0.6, box.low - 0.6, box.right + 0.6, box.high + 0.6)
+def _thick(box: Rect) -> Rect:
+    return Rect(box.left - 0.6, box.low - 0.6, box.right + 0.6, box.high + 0.6)
 
 
 def crossings(sheet: Sheet) -> int:
@@ -184,7 +184,7 @@ def on_each_other(sheet: Sheet) -> list[str]:
     ]
 
 
-def _long(a: Box, b: Box) -> bool:
+def _long(a: Rect, b: Rect) -> bool:
     wide = min(a.right, b.right) - max(a.left, b.left)
     tall = min(a.high, b.high) - max(a.low, b.low)
     return max(wide, tall) > 2.0

@@ -21,16 +21,16 @@ from clutchwork.declare.layout import FIELDS
 from clutchwork.declare.node import is_reference
 from clutchwork.declare.rational import ONE, Row, plus, product
 from clutchwork.declare.schema import Role, inputs
-from clutchwork.declare.speech import path_of
+from clutchwork.declare.wording import path_of
 from clutchwork.model.findings import Findings, Structure, findings
 from clutchwork.model.kinematics import apart, kinematics
 from clutchwork.model.loads import load_arrays
 from clutchwork.model.model import Model
-from clutchwork.model.parts import Place, is_stop, place_of
+from clutchwork.model.parts import StopTravel, is_stop, place_of
 from clutchwork.model.pools import Pools
 from clutchwork.model.start import Started, initial_angles, speed_at_start, start
 from clutchwork.model.structure import Kinematics, Mechanism, follows_load
-from clutchwork.model.transmissions import ordered, transmissions
+from clutchwork.model.variable_ratios import ordered, transmissions
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Mapping, Sequence
@@ -52,7 +52,7 @@ def assembled(whole: Model, independent: Sequence[str] = (), found: Findings | N
     made, begun, motions = chosen(found.structure, independent)
     shared = Shared(parts.thermal, tuple(model.role(Role.PROCESS)))
     where = places(parts.thermal, shared.processes, [component for component, _ in model.acting])
-    pools, wires, columns = Pools(), Wires(where), Columns(model, made)
+    pools, wires, columns = Pools(), Wires(where), SpeedColumns(model, made)
     wires.surround(parts.thermal)
     arrays = _inertia(model, made, columns)
     rates = [made.over(row) for _, row in model.acting] if independent else found.structure.rates
@@ -127,7 +127,7 @@ def _arranged(rates: Sequence[Row], made: Kinematics) -> list[int]:
     return apart(made.independent, lambda node: sorted(touching[node]))
 
 
-class Columns:
+class SpeedColumns:
     """Places of the independent speeds and of the prescribed ones in the arrays."""
 
     def __init__(self, model: Mechanism, made: Kinematics) -> None:
@@ -150,7 +150,7 @@ def _matrix(rows: Sequence[Row], places: Mapping[int, int]) -> Array:
     return made
 
 
-def _inertia(model: Mechanism, made: Kinematics, columns: Columns) -> dict[str, Any]:
+def _inertia(model: Mechanism, made: Kinematics, columns: SpeedColumns) -> dict[str, Any]:
     """Basis and mass matrix."""
     arrays = columns.split("basis", made.speeds) | mass_arrays(model.inertia, made, columns)
     return arrays | {
@@ -160,7 +160,7 @@ def _inertia(model: Mechanism, made: Kinematics, columns: Columns) -> dict[str, 
     }
 
 
-def mass_arrays(inertia: Sequence[Fraction], made: Kinematics, columns: Columns) -> dict[str, Any]:
+def mass_arrays(inertia: Sequence[Fraction], made: Kinematics, columns: SpeedColumns) -> dict[str, Any]:
     """The mass matrix, computed as fractions and rounded once."""
     rows: dict[int, Row] = {node: {} for node in made.independent}
     for own, speed in zip(inertia, made.speeds, strict=True):
@@ -172,7 +172,7 @@ def mass_arrays(inertia: Sequence[Fraction], made: Kinematics, columns: Columns)
     return columns.split("mass", list(rows.values()))
 
 
-def _rates(model: Mechanism, found: Sequence[Row], columns: Columns, role: Role, prefix: str) -> dict[str, Any]:
+def _rates(model: Mechanism, found: Sequence[Row], columns: SpeedColumns, role: Role, prefix: str) -> dict[str, Any]:
     own = [row for row, (component, _) in zip(found, model.acting, strict=True) if component.role is role]
     return columns.split(f"{prefix}_rate", own) | {
         f"{prefix}_kind": [number(type(component)) for component, _ in model.acting if component.role is role],
@@ -225,7 +225,7 @@ def _elements(model: Mechanism, pools: Pools, wires: Wires, states: list[float])
     }
 
 
-def _transmissions(model: Mechanism, made: Kinematics, columns: Columns) -> dict[str, Any]:
+def _transmissions(model: Mechanism, made: Kinematics, columns: SpeedColumns) -> dict[str, Any]:
     ties = list(ordered(model, made))
     ways = [component for component, _ in model.acting]
     return {
@@ -236,7 +236,7 @@ def _transmissions(model: Mechanism, made: Kinematics, columns: Columns) -> dict
 
 def _contacts(model: Mechanism, pools: Pools, wires: Wires, states: list[float]) -> dict[str, Any]:
     contacts = model.role(Role.CONTACT)
-    places = {part.name: place for place, (part, _) in enumerate(model.acting) if isinstance(part, Place)}
+    places = {part.name: place for place, (part, _) in enumerate(model.acting) if isinstance(part, StopTravel)}
     offsets = list[int]()
     for contact in contacts:
         # bristles start without deflection

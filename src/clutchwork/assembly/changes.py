@@ -12,7 +12,7 @@ from clutchwork.assembly.patches import Numbered, Unpatched, changed_signals, pa
 from clutchwork.base.errors import ModelError, Problem
 from clutchwork.declare.node import Component, Law, Signal
 from clutchwork.declare.schema import specs
-from clutchwork.declare.speech import words_of_files
+from clutchwork.declare.wording import words_of_files
 from clutchwork.model.changes import changed_model, named, renewed, target, with_held
 from clutchwork.model.components import component_advice, component_problems
 from clutchwork.model.fields import BROKEN, SOUND, At, law_problems, value_problems

@@ -20,7 +20,7 @@ from clutchwork.signals.constant import Constant
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from clutchwork.assembly.places import Places
+    from clutchwork.assembly.places import SharedNumbers
     from clutchwork.declare.node import Component
 
 # what a prescribed motion is in the core
@@ -33,7 +33,7 @@ SORTS = ("input", "shared", "rate", "heat")
 class Wires:
     """Signals in the order of their numbers, and what the inputs of components refer to."""
 
-    places: Places
+    places: SharedNumbers
     inputs: list[Input] = field(default_factory=list)
     links: list[Link] = field(default_factory=list)
     refs: list[tuple[str, int]] = field(default_factory=list)

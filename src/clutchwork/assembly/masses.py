@@ -11,10 +11,10 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
-from clutchwork.assembly.assemble import Columns, assembled, chosen, mass_arrays
+from clutchwork.assembly.assemble import SpeedColumns, assembled, chosen, mass_arrays
 from clutchwork.base.classes import dataclass
 from clutchwork.base.errors import ModelError
-from clutchwork.base.kept import kept
+from clutchwork.base.memoize import memoize
 from clutchwork.declare.rational import exact
 from clutchwork.model.changes import all_names, changed_model, named, target
 from clutchwork.model.findings import findings
@@ -39,7 +39,7 @@ class Masses:
     inertia: tuple[Fraction, ...]
     places: Mapping[str, int]  # of nodes that have some, by the name of their inertia
     made: Kinematics
-    columns: Columns
+    columns: SpeedColumns
     wanted: tuple[int, ...]  # nodes whose speeds were asked for
     pattern: tuple[list[int], list[int]]  # ends and columns of the rows of the matrix
 
@@ -56,7 +56,7 @@ class Masses:
         made, _, _ = chosen(found, system.wanted)
         pattern = system.arrays["mass_end"].tolist(), system.arrays["mass_column"].tolist()
         wanted = tuple(names.index(name) for name in system.wanted)
-        masses = cls(tuple(found.mechanism.inertia), places, made, Columns(found.mechanism, made), wanted, pattern)
+        masses = cls(tuple(found.mechanism.inertia), places, made, SpeedColumns(found.mechanism, made), wanted, pattern)
         return masses if masses._is_all(system, source) else None
 
     def _is_all(self, system: System, source: Model) -> bool:
@@ -98,7 +98,7 @@ def is_mass(name: str) -> bool:
     return name.endswith((".inertia", ".mass"))
 
 
-@kept
+@memoize
 def masses(system: System) -> Masses | None:
     """Those of a System, found once."""
     try:

@@ -11,7 +11,7 @@ from clutchwork.model.parts import sensor_name, state_name
 
 
 @dataclass(frozen=True)
-class Places:
+class SharedNumbers:
     """Numbers of shared states and directions by name."""
 
     shared: Mapping[str, int]  # thermal node, or "process.state"
@@ -26,7 +26,7 @@ class Places:
         return "shared", self.shared[state_name(value)]
 
 
-def places(thermal: Sequence[ThermalNode], processes: Sequence[Any], acting: Sequence[Component]) -> Places:
+def places(thermal: Sequence[ThermalNode], processes: Sequence[Any], acting: Sequence[Component]) -> SharedNumbers:
     """Shared states: thermal nodes, then those of processes; directions: torque elements, then contacts."""
     names = [node.name for node in thermal]
     names += [f"{process.name}.{state.name}" for process in processes for state in type(process).states]
@@ -34,4 +34,4 @@ def places(thermal: Sequence[ThermalNode], processes: Sequence[Any], acting: Seq
     for number, component in enumerate(acting):
         # of several ways the first one
         directions.setdefault(component.name, number)
-    return Places({name: number for number, name in enumerate(names)}, directions)
+    return SharedNumbers({name: number for number, name in enumerate(names)}, directions)

@@ -13,7 +13,7 @@ if TYPE_CHECKING:
     from collections.abc import Callable
 
     from clutchwork.assembly.inputs import Wires
-    from clutchwork.assembly.places import Places
+    from clutchwork.assembly.places import SharedNumbers
     from clutchwork.declare.node import Node, ThermalNode
     from clutchwork.model.pools import Pools
     from clutchwork.model.structure import Mechanism
@@ -76,7 +76,7 @@ def flow_arrays(model: Mechanism, pools: Pools, wires: Wires) -> dict[str, Any]:
     }
 
 
-def heat_arrays(model: Mechanism, where: Places) -> dict[str, Any]:
+def heat_arrays(model: Mechanism, where: SharedNumbers) -> dict[str, Any]:
     """Paths of heat from elements and contacts to thermal nodes."""
     # of several ways the first one has the heat of all
     acting = (*model.role(Role.TORQUE), *model.role(Role.CONTACT))

@@ -17,12 +17,12 @@ from clutchwork.assembly.changes import UNKNOWN_SOURCE, Quick, changed, quick
 from clutchwork.assembly.dependence import dependent_sets
 from clutchwork.assembly.patches import Numbered, numbered
 from clutchwork.assembly.records import TYPES, Array, Gearing, Input, Link, frozen
-from clutchwork.assembly.rooms import rooms
 from clutchwork.assembly.sparse import dense, entries
+from clutchwork.assembly.storage_bounds import rooms
 from clutchwork.base.classes import dataclass
 from clutchwork.base.errors import ClutchworkError, ModelError, UseError, near, warn
-from clutchwork.base.shown import shortened, shown
-from clutchwork.base.text import counted
+from clutchwork.base.plural import counted
+from clutchwork.base.quote import quote, shortened
 from clutchwork.declare.calls import explained, explained_methods
 from clutchwork.declare.core import core
 from clutchwork.declare.layout import COUNTS, FIELDS, SPARSE
@@ -93,7 +93,7 @@ class System:
             sizes |= {"thermal nodes": len(self.source.thermal), "elements": len(self.source.elements)}
         parts = {"independent speeds": "speeds", "torque elements": "elements", "contacts": "contacts"}
         sizes |= {words: self.counts[name] for words, name in parts.items()} | {"inputs": self.counts["inputs"]}
-        return f"<System {shown(self.name)}: {', '.join(counted(size, words) for words, size in sizes.items())}>"
+        return f"<System {quote(self.name)}: {', '.join(counted(size, words) for words, size in sizes.items())}>"
 
     def _repr_mimebundle_(self, **_: Any) -> dict[str, Any]:
         from clutchwork.base.rich import bundle
@@ -165,7 +165,7 @@ class System:
         """
         if not isinstance(changes, Mapping):
             remedy = 'give values by name: changed({"engine.inertia": 0.3, "c1.gain": 5e-4})'
-            raise UseError("changed", [f"changes is {shown(changes)}: {remedy}"])
+            raise UseError("changed", [f"changes is {quote(changes)}: {remedy}"])
         if self.source is None:
             raise ModelError([UNKNOWN_SOURCE])
         # what is warned of is looked at as a whole

@@ -10,13 +10,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from clutchwork.base.classes import dataclass
-from clutchwork.base.kept import kept
+from clutchwork.base.memoize import memoize
 from clutchwork.declare.layout import ROW
 from clutchwork.declare.node import Component, Domain, Node
 from clutchwork.declare.ports import Direction, directions, port_domains, ports
 from clutchwork.declare.schema import Role, State
-from clutchwork.model.parts import Place, Sensor, is_stop, place_of
-from clutchwork.model.structure import Places
+from clutchwork.model.parts import Sensor, StopTravel, is_stop, place_of
+from clutchwork.model.structure import NodePlaces
 
 if TYPE_CHECKING:
     from clutchwork.assembly.records import Link
@@ -43,11 +43,11 @@ class Branch:
     @property
     def hidden(self) -> bool:
         """Whether it only measures."""
-        return self.watched or isinstance(self.component, Sensor | Place)
+        return self.watched or isinstance(self.component, Sensor | StopTravel)
 
 
 @dataclass(frozen=True)
-class Source:
+class StateOwner:
     """Something without direction that has shared states: name, component, states."""
 
     name: str
@@ -80,8 +80,8 @@ class Wiring:
     gears: tuple[GearRow, ...]
     inputs: tuple[tuple[str, str], ...]  # (name, unit)
     columns: Mapping[str, slice]
-    thermal: tuple[Source, ...] = ()
-    processes: tuple[Source, ...] = ()
+    thermal: tuple[StateOwner, ...] = ()
+    processes: tuple[StateOwner, ...] = ()
     supplies: tuple[Branch, ...] = ()  # elements that draw work and heat from a supply
     flows: tuple[str, ...] = ()
     links: tuple[Link, ...] = ()
@@ -109,10 +109,10 @@ class Wiring:
         return matrix
 
 
-@kept
+@memoize
 def wiring(system: System) -> Wiring:
     """The connections of a System, found once."""
-    places = Places(system.nodes)
+    places = NodePlaces(system.nodes)
     gears = [GearRow(row.gear.name, dict(row.ports), _domains(row.gear)) for row in system.gears]
     branches = [_branch(component, way, places) for component, way in _ways((*system.elements, *system.contacts))]
     branches = _with_states(branches)
@@ -135,14 +135,14 @@ def wiring(system: System) -> Wiring:
     )
 
 
-def _shared(system: System, components: tuple[Any, ...]) -> Iterator[Source]:
+def _shared(system: System, components: tuple[Any, ...]) -> Iterator[StateOwner]:
     """Thermal nodes, whose state is their heat, or processes, which follow them, with the places of their states."""
     nodes = components is system.thermal
     first = system.counts["states"] - system.counts["shared"] + (0 if nodes else len(system.thermal))
     for component in components:
         own = HEAT if nodes else component.states
         states = tuple((state.name, state.unit, first + k) for k, state in enumerate(own))
-        yield Source(component.name, component, states)
+        yield StateOwner(component.name, component, states)
         first += len(own)
 
 
@@ -159,7 +159,7 @@ def _ways(components: Iterable[Component]) -> Iterator[tuple[Component, Directio
     return ((component, way) for component in components for way in directions(component))
 
 
-def _branch(component: Component, way: Direction, places: Places) -> Branch:
+def _branch(component: Component, way: Direction, places: NodePlaces) -> Branch:
     """A direction over the nodes and the housing."""
     direction: dict[int, float] = {}
     grounded: dict[Domain, float] = {}
@@ -194,7 +194,7 @@ def _with_places(branches: list[Branch]) -> list[Branch]:
     named = {branch.name: branch for branch in branches}
     made = list[Branch]()
     for branch in branches:
-        if isinstance(branch.component, Place):
+        if isinstance(branch.component, StopTravel):
             branch = replace(branch, states=())
         elif branch.component.role is Role.CONTACT and is_stop(branch.component):
             ((name, _, index),) = named[place_of(branch.component)].states

@@ -1,1 +1,1 @@
-"""Ground floor: errors that carry the remedy, values as messages show them, files that are opened with care."""
+"""Errors that name the remedy, values as messages quote them, safe writing of files."""

@@ -28,14 +28,14 @@ def write(path: str | Path, parts: Mapping[str, bytes]) -> None:
 
 def read(path: str | Path, names: Sequence[str]) -> list[bytes]:
     """The parts of a small archive; ValueError says why there are none, OSError that it cannot be read."""
-    parts = Parts(path, names, MOST_BYTES)
+    parts = ArchiveParts(path, names, MOST_BYTES)
     # a part never gives more than the size that its head says
     if sum(map(parts.size, names)) > MOST_BYTES:
         raise ValueError(f"it unpacks to more than {MOST_BYTES} bytes")
     return [parts.read(name) for name in names]
 
 
-class Parts:
+class ArchiveParts:
     """The parts of an archive, each unpacked when it is asked for; ValueError and OSError as for `read`."""
 
     def __init__(self, path: str | Path, names: Sequence[str], most: int) -> None:

@@ -133,11 +133,14 @@ def _parameter(item: Field[Any], kind: Any) -> Any:
     return Parameter(item.name, kind, default=default, annotation=item.type)
 
 
-class _Signature:
+class LazySignature:
     """The signature of a class, made when it is asked for."""
 
+    def __init__(self, made: Callable[[type], Signature]) -> None:
+        self.made = made
+
     def __get__(self, thing: object, cls: type) -> Signature:
-        return signature(cls)
+        return self.made(cls)
 
 
 @recursive_repr()
@@ -213,7 +216,7 @@ def _fields(cls: Any, kw_only: bool) -> dict[str, Field[Any]]:
 def _made(cls: Any, frozen: bool, own_repr: bool, eq: bool, kw_only: bool) -> Any:
     cls.__dataclass_fields__ = _fields(cls, kw_only)
     cls.__dataclass_params__ = vars(_Frozen if frozen else _Open)["__dataclass_params__"]
-    cls.__init__, cls.__signature__, cls.__replace__ = _init, _Signature(), _replace
+    cls.__init__, cls.__signature__, cls.__replace__ = _init, LazySignature(signature), _replace
     if frozen:
         cls.__setattr__, cls.__delattr__ = _setattr, _delattr
     if own_repr and "__repr__" not in vars(cls):

@@ -8,8 +8,8 @@ from itertools import islice
 from typing import TYPE_CHECKING
 
 from clutchwork.base.classes import dataclass
-from clutchwork.base.shown import LONGEST, printable, shortened
-from clutchwork.base.text import counted
+from clutchwork.base.plural import counted
+from clutchwork.base.quote import LONGEST, printable, shortened
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Sequence

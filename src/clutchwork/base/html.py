@@ -58,5 +58,5 @@ def image(png: bytes, width: int) -> str:
 
 
 def page(*parts: str) -> str:
-    """Parts one below another."""
+    """Stacks parts vertically."""
     return f"<div>{''.join(parts)}</div>"

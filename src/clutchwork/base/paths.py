@@ -7,7 +7,7 @@ from collections.abc import Sequence
 from pathlib import Path
 
 from clutchwork.base.errors import ClutchworkError, UseError
-from clutchwork.base.shown import listed, shown
+from clutchwork.base.quote import listed, quote
 
 
 class WriteError(ClutchworkError, OSError):
@@ -26,7 +26,7 @@ def _is_path(path: object) -> bool:
 
 
 def _no_path(path: object, example: str) -> str:
-    return f"{shown(path)} is not a path; give a string, such as {example!r}"
+    return f"{quote(path)} is not a path; give a string, such as {example!r}"
 
 
 def path_fault(path: object, example: str) -> str:
@@ -36,7 +36,7 @@ def path_fault(path: object, example: str) -> str:
     if not str(path):
         return f"the path is empty; give the name of a file, such as {example!r}"
     if "\0" in str(path):
-        return f"{shown(str(path))}: no file can have this name; give one such as {example!r}"
+        return f"{quote(str(path))}: not a valid file name; give one such as {example!r}"
     return ""
 
 
@@ -47,7 +47,7 @@ def fitting(call: str, path: object, example: str, endings: Sequence[str] = ()) 
     where = path_of(call, path, example)
     # a name without an ending says nothing wrong
     if endings and where.suffix and where.suffix.lower() not in endings:
-        fault = f"{shown(str(where))} ends in {shown(where.suffix)}, and what is written is {listed(endings)}"
+        fault = f"{quote(str(where))} ends in {quote(where.suffix)}, and what is written is {listed(endings)}"
         raise UseError(call, [f"{fault}; give a path such as {example!r}"])
     return where
 

@@ -9,7 +9,7 @@ from typing import Any, TypeVar
 
 from clutchwork.base.errors import UseError
 from clutchwork.base.extras import need
-from clutchwork.base.shown import shown
+from clutchwork.base.quote import quote
 
 N = TypeVar("N", int, float)
 
@@ -22,7 +22,7 @@ MEASURED = "{l_bar}{bar}| {n:.4g} of {total:.4g} {unit} [{elapsed}<{remaining}]"
 def followed(
     progress: Any, total: N, call: str, asks: str, begin: float = 0, **looks: Any
 ) -> Iterator[Callable[[N], None] | None]:
-    """What takes how much is done; None where nobody asked.
+    """Progress callback, or None.
 
     Parameters: progress, as the user gave it: True for a bar, or a function of (done, total); total, all that is to do;
     call and asks, for the message where it is neither; begin, where a bar counts from; looks, of the bar, as tqdm takes
@@ -36,7 +36,7 @@ def followed(
     elif progress is False or progress is None:
         yield None
     else:
-        raise UseError(call, [f"progress is {shown(progress)}: give True, or a function of {asks}"])
+        raise UseError(call, [f"progress is {quote(progress)}: give True, or a function of {asks}"])
 
 
 def _set(bar: Any, done: float) -> None:

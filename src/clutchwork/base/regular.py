@@ -27,7 +27,7 @@ def open_regular(path: str | Path, most: int) -> BinaryIO:
         # a pipe without a writer would wait for one
         number = os.open(path, os.O_RDONLY | getattr(os, "O_NONBLOCK", 0) | getattr(os, "O_CLOEXEC", 0))
     except ValueError as error:
-        raise UnfitFileError("no file can have this name") from error
+        raise UnfitFileError("is not a valid file name") from error
     found = os.fstat(number)
     if not stat.S_ISREG(found.st_mode):
         fault = "is not a regular file"

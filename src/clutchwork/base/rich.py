@@ -19,7 +19,7 @@ SHOWN_BY = {
 }
 
 
-class Drawn(Protocol):
+class NotebookPicture(Protocol):
     """A picture of matplotlib that knows its size in a notebook."""
 
     @property

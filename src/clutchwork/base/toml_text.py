@@ -16,7 +16,7 @@ class DeepKeyError(ValueError):
     """A key with too many parts."""
 
     def __init__(self, line: int) -> None:
-        super().__init__(f"a key has more than {MOST_PARTS} parts with dots between (at line {line}, column 1)")
+        super().__init__(f"a key has more than {MOST_PARTS} dotted parts (at line {line}, column 1)")
         self.line = line
 
 

@@ -1,1 +1,1 @@
-"""Calibration: numbers of a driveline so that a goal is least and limits hold, by gradients that are exact."""
+"""Calibration: parameters that minimise an objective under constraints, by exact gradients."""

@@ -9,16 +9,16 @@ from typing import TYPE_CHECKING, Any, Unpack
 from clutchwork.base.errors import UseError, near
 from clutchwork.base.paths import path_fault, path_of
 from clutchwork.base.progress import followed
-from clutchwork.base.shown import shown
+from clutchwork.base.quote import quote
 from clutchwork.calibration.limits import Limit
-from clutchwork.calibration.memory import Memory
+from clutchwork.calibration.memory import Checkpoint
 from clutchwork.calibration.method import SOLVERS
-from clutchwork.calibration.problem import Mistakes, Problem, problem, refuse_bounds
-from clutchwork.calibration.result import Asked, Calibration, CalibrationInterrupted, found_by
+from clutchwork.calibration.problem import CalibrationProblem, Mistakes, problem, refuse_bounds
+from clutchwork.calibration.result import Calibration, CalibrationInterrupted, SearchSettings, found_by
 from clutchwork.calibration.scatter import Scatter
-from clutchwork.calibration.search import Search
-from clutchwork.calibration.solving import Way
-from clutchwork.calibration.terms import Span
+from clutchwork.calibration.search import MultiStartSearch
+from clutchwork.calibration.solving import SearchMethod
+from clutchwork.calibration.terms import TimeSpan
 from clutchwork.calibration.threads import one_thread
 from clutchwork.declare.calls import explained
 from clutchwork.declare.options import Options
@@ -91,18 +91,18 @@ def calibrate(
     counts = {"starts": starts, "samples": samples, "threads": threads, "iterations": iterations}
     mistakes.found += _faults(counts, seed, tolerance, solver, robust, file)
     wanted = mistakes.caught(
-        lambda: problem(system, Span(plain.t_start, end), free, minimise, subject_to, scatter), None
+        lambda: problem(system, TimeSpan(plain.t_start, end), free, minimise, subject_to, scatter), None
     )
     if wanted is not None and wanted.scatter and robust == "mean":
         mistakes.found += _no_mean(wanted)
     if mistakes.found or wanted is None:
         raise UseError("calibrate", mistakes.found)
     refuse_bounds(wanted)
-    asked = Asked(plain, solver, starts, samples, robust, threads, seed, tolerance, iterations)
+    asked = SearchSettings(plain, solver, starts, samples, robust, threads, seed, tolerance, iterations)
     return searched(wanted, asked, None if file is None else path_of("calibrate", file, "shift.json"), progress)
 
 
-def searched(wanted: Problem, asked: Asked, file: Path | None, progress: Any) -> Calibration:
+def searched(wanted: CalibrationProblem, asked: SearchSettings, file: Path | None, progress: Any) -> Calibration:
     """What a search finds."""
     outputs = {str(number): one for number, one in enumerate(wanted.outputs)}
     function: Any = None
@@ -114,13 +114,13 @@ def searched(wanted: Problem, asked: Asked, file: Path | None, progress: Any) ->
     spread = None
     if wanted.scatter:
         spread = Scatter.of(wanted, asked.samples, asked.seed, asked.robust == "worst")
-    way = Way(
+    way = SearchMethod(
         SOLVERS[asked.solver], asked.tolerance, asked.iterations, asked.starts, asked.threads, asked.seed, spread
     )  # fmt: skip
-    memory = Memory(file, wanted, asked.identity)
+    memory = Checkpoint(file, wanted, asked.identity)
     most = asked.starts * asked.iterations
     with followed(progress, most, "calibrate", "(points, most)", unit=" points") as told, one_thread():
-        search = Search(wanted, function, way, memory, told)
+        search = MultiStartSearch(wanted, function, way, memory, told)
         try:
             search.run()
         except KeyboardInterrupt:
@@ -130,7 +130,7 @@ def searched(wanted: Problem, asked: Asked, file: Path | None, progress: Any) ->
         return found_by(search, asked)
 
 
-def _no_mean(wanted: Problem) -> list[str]:
+def _no_mean(wanted: CalibrationProblem) -> list[str]:
     """The largest of many values has no mean over production."""
     if not wanted.goal.is_several(wanted.span, wanted.curves):
         return []
@@ -143,18 +143,18 @@ def _faults(
 ) -> list[str]:  # fmt: skip
     """What is wrong with settings."""
     found = [
-        f"{name} is {shown(value)}: give a whole number from 1 on"
+        f"{name} is {quote(value)}: give a whole number of at least 1"
         for name, value in counts.items()
         if not isinstance(value, int) or isinstance(value, bool) or value < 1
     ]
     if not isinstance(seed, int) or isinstance(seed, bool) or seed < 0:
-        found.append(f"seed is {shown(seed)}: give a whole number from 0 on")
+        found.append(f"seed is {quote(seed)}: give a whole number from 0 on")
     if not isinstance(tolerance, float) or not 0.0 < tolerance < 1.0:
-        found.append(f"tolerance is {shown(tolerance)}: give a number between 0 and 1, such as 1e-10")
+        found.append(f"tolerance is {quote(tolerance)}: give a number between 0 and 1, such as 1e-10")
     for name, value, known in (("solver", solver, (*SOLVERS,)), ("robust", robust, ROBUST)):
         if value not in known:
             choices = " or ".join(map(repr, known))
-            found.append(f"{name} is {shown(value)}{near(value, known, f'give {choices}')}")
+            found.append(f"{name} is {quote(value)}{near(value, known, f'give {choices}')}")
     if file is not None and (
         fault := path_fault(os.fspath(file) if isinstance(file, os.PathLike) else file, "shift.json")
     ):

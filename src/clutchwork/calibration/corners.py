@@ -18,10 +18,10 @@ from numpy.typing import NDArray
 from clutchwork.base.extras import need
 from clutchwork.calibration.optimal import CLOSE
 from clutchwork.calibration.outcome import FEASIBLE, OPTIMAL
-from clutchwork.calibration.rows import Block, measure
+from clutchwork.calibration.rows import ConstraintBlock, measure
 
 if TYPE_CHECKING:
-    from clutchwork.calibration.evaluate import Point
+    from clutchwork.calibration.evaluate import Evaluation
     from clutchwork.calibration.scaled import Scaled
 
 Array = NDArray[np.float64]
@@ -64,8 +64,8 @@ class _Cut(NamedTuple):
 def around(scaled: Scaled, y: Array) -> Around | None:
     """What a point and its neighbours say together; None where too few have a gradient."""
     own, here = len(scaled.width), scaled.goal(y)
-    block = Block([row for row in scaled.rows if row.limit >= 0])
-    goal = Block([row for row in scaled.rows if row.limit < 0])
+    block = ConstraintBlock([row for row in scaled.rows if row.limit >= 0])
+    goal = ConstraintBlock([row for row in scaled.rows if row.limit < 0])
     cuts, best, least = list[_Cut](), y, here
 
     def look(one: Array) -> None:
@@ -165,7 +165,7 @@ def _neighbours(y: Array, own: int) -> list[Array]:
     return made
 
 
-def _holds(scaled: Scaled, point: Point, y: Array, block: Block) -> bool:
+def _holds(scaled: Scaled, point: Evaluation, y: Array, block: ConstraintBlock) -> bool:
     """Whether all limits hold."""
     matrix, ends = scaled.linear
     values = scaled.values_at(point, y, block)
@@ -173,7 +173,7 @@ def _holds(scaled: Scaled, point: Point, y: Array, block: Block) -> bool:
     return max(float(np.max(one, initial=0.0)) for one in (out, matrix @ y - ends)) <= FEASIBLE
 
 
-def _cut(scaled: Scaled, other: Array, y: Array, block: Block, goal: Block) -> _Cut:
+def _cut(scaled: Scaled, other: Array, y: Array, block: ConstraintBlock, goal: ConstraintBlock) -> _Cut:
     own, step = len(scaled.width), (y - other)[: len(scaled.width)]
     if scaled.worst:
         flat = np.append(other[:own], 0.0)
@@ -185,7 +185,7 @@ def _cut(scaled: Scaled, other: Array, y: Array, block: Block, goal: Block) -> _
     return _Cut(values + slopes @ step, slopes, limits + by @ step, by, limits, largest)
 
 
-def _left(scaled: Scaled, y: Array, block: Block, cuts: list[_Cut], walls: Array) -> Array:
+def _left(scaled: Scaled, y: Array, block: ConstraintBlock, cuts: list[_Cut], walls: Array) -> Array:
     """The way down that gradients leave: against their least convex combination, beside active limits and bounds."""
     own = len(scaled.width)
     if not cuts:
@@ -210,7 +210,7 @@ def _left(scaled: Scaled, y: Array, block: Block, cuts: list[_Cut], walls: Array
 
 def _stepped(scaled: Scaled, y: Array, found: Around) -> Array:
     """The best of the neighbours and of steps in boxes, by the linear models of all of them."""
-    block = Block([row for row in scaled.rows if row.limit >= 0])
+    block = ConstraintBlock([row for row in scaled.rows if row.limit >= 0])
     best, least = found.y, found.goal
     for box, off in product(BOXES, OFF if len(found.walls) else OFF[:1]):
         other = _program(scaled, y, found, box, off)

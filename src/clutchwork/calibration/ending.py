@@ -27,12 +27,12 @@ MOST_STALLED, LITTLE = 6, 1e-5
 MOST_RUNS = 150
 
 
-class Ended(Exception):  # noqa: N818, it is caught where it is raised
+class SearchEnded(Exception):  # noqa: N818, it is caught where it is raised
     """The search is at its end, or lost."""
 
 
 class Ending:
-    """Looks at each step of a solver; `Ended` where it was the last one, and `best` is the best of them."""
+    """Looks at each step of a solver; `SearchEnded` where it was the last one, and `best` is the best of them."""
 
     def __init__(self, scaled: Scaled, tolerance: float) -> None:
         self.scaled, self.tolerance = scaled, tolerance
@@ -49,7 +49,7 @@ class Ending:
         residual = found.residual / measure(goal)
         if self.scaled.is_enough(y) or (residual <= RESIDUAL and found.violation <= VIOLATION):
             self.best, self.merit = y.copy(), goal
-            raise Ended
+            raise SearchEnded
         merit = goal + PRICE * found.violation
         close = found.violation <= VIOLATION and residual < 0.5 * self.residual
         helps = merit < self.merit - LITTLE * abs(merit) or close
@@ -60,4 +60,4 @@ class Ending:
         if found.violation <= VIOLATION:
             self.residual = min(residual, self.residual)
         if lost or self.stalled >= MOST_STALLED or self.scaled.evaluator.runs >= self.last:
-            raise Ended
+            raise SearchEnded

@@ -13,12 +13,12 @@ from numpy.typing import NDArray
 from clutchwork.base.classes import dataclass
 from clutchwork.base.errors import ModelError
 from clutchwork.calibration.moves import Moves
-from clutchwork.calibration.terms import Given, length
+from clutchwork.calibration.terms import TermData, length
 from clutchwork.results.gradient import NoGradient
 
 if TYPE_CHECKING:
-    from clutchwork.calibration.limits import Sum
-    from clutchwork.calibration.problem import Problem
+    from clutchwork.calibration.limits import WeightedSum
+    from clutchwork.calibration.problem import CalibrationProblem
 
 Array = NDArray[np.float64]
 # solvers ask for values and gradients of a few points in turn
@@ -28,7 +28,7 @@ WIDE = 1e-5
 
 
 @dataclass(frozen=True)
-class Point:
+class Evaluation:
     """Goal and limits at values of the unknowns, one after another, and their derivatives by the unknowns."""
 
     x: Array
@@ -49,7 +49,7 @@ class Evaluator:
     Rows are those of the goal first, then those of each limit; `parts` says which.
     """
 
-    def __init__(self, problem: Problem, function: Any) -> None:
+    def __init__(self, problem: CalibrationProblem, function: Any) -> None:
         self.problem, self.function = problem, function
         self.moves = Moves(problem.unknowns, problem.numbers)
         self.spread = Moves(problem.scatter, problem.numbers)
@@ -60,12 +60,12 @@ class Evaluator:
         needs = [[at for one in each.needs(problem.span) for at in place[one]] for each in self.sums]
         self.wanted = [np.array(places, dtype=np.intp) for places in needs]
         self.places = {name: at for at, name in enumerate(problem.numbers)}
-        self.points = OrderedDict[bytes, Point]()
+        self.points = OrderedDict[bytes, Evaluation]()
         self.runs = 0
-        self.seen: Callable[[Point], None] = _nobody
+        self.seen: Callable[[Evaluation], None] = _nobody
         self.last: tuple[bytes, Array] = b"", np.zeros((0, 0))
 
-    def at(self, x: Array, samples: Sequence[Array] = ()) -> Point:
+    def at(self, x: Array, samples: Sequence[Array] = ()) -> Evaluation:
         """Goal and limits with their gradients.
 
         Parameters: samples, what production scatters, each as the values of `Problem.scatter`; nominal by default.
@@ -97,14 +97,14 @@ class Evaluator:
                 return np.full((1, self.parts[-1].stop), np.nan)
             return np.concatenate([self._each(line[None]) for line in numbers])
 
-    def tried(self, x: Array, samples: Sequence[Array]) -> Point:
+    def tried(self, x: Array, samples: Sequence[Array]) -> Evaluation:
         """A point without gradients."""
         try:
             self.runs += len(samples) or 1
             values = self._plain(self._numbers(x, list(samples) or [self.nominal]))
         except ModelError as error:
-            return Point(x, np.zeros((0, 0)), np.zeros((0, 0, 0)), str(error))
-        return Point(x, values, np.zeros((0, 0, 0)), self._fault(values, values[..., None]))
+            return Evaluation(x, np.zeros((0, 0)), np.zeros((0, 0, 0)), str(error))
+        return Evaluation(x, values, np.zeros((0, 0, 0)), self._fault(values, values[..., None]))
 
     def _plain(self, numbers: Array) -> Array:
         """Rows of many lines of numbers."""
@@ -117,13 +117,13 @@ class Evaluator:
         own = self.moves.apply(self.problem.base, x)
         return np.array([self.spread.apply(own, one) for one in samples])
 
-    def _made(self, x: Array, samples: Sequence[Array]) -> Point:
+    def _made(self, x: Array, samples: Sequence[Array]) -> Evaluation:
         numbers = self._numbers(x, samples)
         self.runs += len(samples)
         try:
             values, slopes, note = self._differentiated(numbers)
         except ModelError as error:
-            return Point(x, np.zeros((0, 0)), np.zeros((0, 0, 0)), str(error))
+            return Evaluation(x, np.zeros((0, 0)), np.zeros((0, 0, 0)), str(error))
         by_x = self.moves.slopes(self.problem.base, x)
         found, made = list[Array](), list[Array]()
         for value, slope, own, sample in zip(values, slopes, numbers, samples, strict=True):
@@ -134,7 +134,7 @@ class Evaluator:
             made.append(exact if smooth else self._compared(x, sample))
             note = note or ("" if smooth else "differences of runs took the place of a gradient")
         whole, by = np.array(found), np.array(made)
-        return Point(x, whole, by, self._fault(whole, by), note)
+        return Evaluation(x, whole, by, self._fault(whole, by), note)
 
     def _compared(self, x: Array, sample: Array) -> Array:
         """Derivatives of the rows where there is no gradient, as of a clutch that grazes: by runs beside it."""
@@ -171,8 +171,8 @@ class Evaluator:
         ]
         return np.concatenate([value for value, _ in found]), np.concatenate([slope for _, slope in found])
 
-    def _of(self, one: Sum, values: Array, slopes: Array, numbers: Array) -> tuple[Array, Array]:
-        given = Given(values, slopes, numbers, self.places, self.problem.curves, self.problem.span)
+    def _of(self, one: WeightedSum, values: Array, slopes: Array, numbers: Array) -> tuple[Array, Array]:
+        given = TermData(values, slopes, numbers, self.places, self.problem.curves, self.problem.span)
         return one.rows(given)
 
     @cached_property
@@ -197,5 +197,5 @@ class Evaluator:
         return ""
 
 
-def _nobody(point: Point) -> None:
+def _nobody(point: Evaluation) -> None:
     """Nobody looks on."""

@@ -14,9 +14,9 @@ from clutchwork.base.classes import dataclass
 from clutchwork.base.errors import UseError
 from clutchwork.base.extras import need
 from clutchwork.base.paths import fitting
+from clutchwork.base.plural import columns
 from clutchwork.base.progress import followed
-from clutchwork.base.shown import shown
-from clutchwork.base.text import columns
+from clutchwork.base.quote import quote
 from clutchwork.calibration.calibrate import searched
 from clutchwork.calibration.numbers import number
 from clutchwork.calibration.result import CalibrationError, with_limit
@@ -67,7 +67,7 @@ def front(found: Calibration, limit: Settled, bounds: Sequence[Any], progress: A
     ends = [one for one in (number(given, limit.unit) for given in bounds) if one is not None]
     place = next(k for k, one in enumerate(found.problem.limits) if one is limit)
     if isinstance(bounds, str) or not ends or len(ends) < len(bounds) or limit.is_equal:
-        raise UseError("front", [f"bounds are {shown(bounds)}: give several numbers for one side of {limit.name}"])
+        raise UseError("front", [f"bounds are {quote(bounds)}: give several numbers for one side of {limit.name}"])
     made, last, above = list["Calibration"](), found, np.isfinite(limit.upper)
     goals, slopes = np.full((2, len(ends)), np.nan)
     with followed(progress, len(ends), "front", "(bounds done, bounds)", unit=" bounds") as told:

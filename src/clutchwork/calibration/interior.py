@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from clutchwork.base.extras import need
 from clutchwork.calibration.ending import Ending
-from clutchwork.calibration.rows import Block
+from clutchwork.calibration.rows import ConstraintBlock
 from clutchwork.calibration.scaled import REFUSED, Scaled
 from clutchwork.calibration.slsqp import whitened
 
@@ -23,7 +23,7 @@ class _Functions:
     """What cyipopt calls."""
 
     def __init__(self, scaled: Scaled, by_z: Array) -> None:
-        self.scaled, self.by_z, self.block = scaled, by_z, Block(scaled.rows)
+        self.scaled, self.by_z, self.block = scaled, by_z, ConstraintBlock(scaled.rows)
         own = len(scaled.width)
         matrix, ends = scaled.linear
         self.lines = np.vstack([matrix, np.eye(scaled.count)[:own]]) @ by_z

@@ -10,16 +10,16 @@ from numpy.typing import NDArray
 
 from clutchwork.base.classes import dataclass
 from clutchwork.base.errors import UseError
-from clutchwork.base.shown import shown
+from clutchwork.base.quote import quote
 from clutchwork.calibration.numbers import bounds, number
 from clutchwork.calibration.terms import (
-    Given,
     Jerk,
     Rows,
-    Slope,
-    Span,
     SquaredSlope,
+    TableSlope,
     Term,
+    TermData,
+    TimeSpan,
     UnitOf,
     is_computed,
     length,
@@ -28,14 +28,14 @@ from clutchwork.calibration.terms import (
 from clutchwork.declare.calls import explained
 
 if TYPE_CHECKING:
-    from clutchwork.calibration.names import Curve
+    from clutchwork.calibration.names import TimeTable
 
 Array = NDArray[np.float64]
 SUCH = "give an output such as 'c1.heat', cw.lock('c1'), cw.jerk('car'), or {output: weight, ...}"
 
 
 @dataclass(frozen=True)
-class Sum:
+class WeightedSum:
     """Terms with their weights; terms of several values add up value by value."""
 
     terms: tuple[tuple[Term, float], ...]
@@ -46,11 +46,11 @@ class Sum:
         parts = [one.name if weight == 1.0 else f"{weight:g} {one.name}" for one, weight in self.terms]
         return " + ".join(parts).replace("+ -1 ", "- ").replace("+ -", "- ")
 
-    def needs(self, span: Span) -> list[Any]:
+    def needs(self, span: TimeSpan) -> list[Any]:
         """The outputs of a run that it is made of."""
         return [output for one, _ in self.terms for output in one.needs(span)]
 
-    def rows(self, given: Given) -> Rows:
+    def rows(self, given: TermData) -> Rows:
         """Its values, and their derivatives by the numbers."""
         values, slopes = np.zeros(1), np.zeros((1, len(given.numbers)))
         at = 0
@@ -62,7 +62,7 @@ class Sum:
             at += count
         return values, slopes
 
-    def faults(self, span: Span, curves: Mapping[str, Curve]) -> list[str]:
+    def faults(self, span: TimeSpan, curves: Mapping[str, TimeTable]) -> list[str]:
         """Windows longer than a run, and terms whose values cannot be added."""
         found = [fault for one, _ in self.terms if isinstance(one, Jerk) for fault in one.faults(span)]
         if found:
@@ -73,16 +73,16 @@ class Sum:
             return [f"{self.name}: terms of several values add up one by one, but {said}; give a limit for each"]
         return []
 
-    def is_several(self, span: Span, curves: Mapping[str, Curve]) -> bool:
+    def is_several(self, span: TimeSpan, curves: Mapping[str, TimeTable]) -> bool:
         """Whether it has several values."""
         return any(self.counted(one, span, curves) > 1 for one, _ in self.terms)
 
     @staticmethod
-    def counted(one: Term, span: Span, curves: Mapping[str, Curve]) -> int:
+    def counted(one: Term, span: TimeSpan, curves: Mapping[str, TimeTable]) -> int:
         """How many values a term has."""
         needed = sum(map(length, one.needs(span)))
         none = np.zeros(0)
-        return len(one.rows(Given(np.zeros(needed), np.zeros((needed, 0)), none, {}, curves, span))[0])
+        return len(one.rows(TermData(np.zeros(needed), np.zeros((needed, 0)), none, {}, curves, span))[0])
 
     def unit(self, units: UnitOf) -> str:
         """That of its terms where all have one."""
@@ -92,15 +92,15 @@ class Sum:
     @property
     def tables(self) -> list[str]:
         """Names of the tables whose slopes it has."""
-        return [one.stem for one, _ in self.terms if isinstance(one, Slope | SquaredSlope)]
+        return [one.stem for one, _ in self.terms if isinstance(one, TableSlope | SquaredSlope)]
 
     @property
     def needs_run(self) -> bool:
         """Whether it is known only after a run."""
-        return any(one.needs(Span(0.0, 1.0)) for one, _ in self.terms)
+        return any(one.needs(TimeSpan(0.0, 1.0)) for one, _ in self.terms)
 
 
-def summed(given: Any) -> tuple[Sum | None, str]:
+def summed(given: Any) -> tuple[WeightedSum | None, str]:
     """The sum that is meant, or what is wrong with it."""
     pairs = given.items() if isinstance(given, Mapping) else [(given, 1.0)]
     made = list[tuple[Term, float]]()
@@ -108,11 +108,11 @@ def summed(given: Any) -> tuple[Sum | None, str]:
         found, factor = term(one), number(weight, "1")
         if found is None:
             why = "a function of the run has no derivative; " if is_computed(one) else ""
-            return None, f"{shown(one)} is not an output: {why}{SUCH}"
+            return None, f"{quote(one)} is not an output: {why}{SUCH}"
         if factor is None:
-            return None, f"the weight of {found.name} is {shown(weight)}: give a number"
+            return None, f"the weight of {found.name} is {quote(weight)}: give a number"
         made.append((found, factor))
-    return (Sum(tuple(made)), "") if made else (None, f"is empty: {SUCH}")
+    return (WeightedSum(tuple(made)), "") if made else (None, f"is empty: {SUCH}")
 
 
 @dataclass(frozen=True)
@@ -135,7 +135,7 @@ class Limit:
         unit = found.unit(units)
         ends = bounds(self.lower, self.upper, unit)
         if ends is None:
-            given = " and ".join(shown(one) for one in (self.lower, self.upper) if one is not None)
+            given = " and ".join(quote(one) for one in (self.lower, self.upper) if one is not None)
             wanted = f"finite numbers{f' in {unit}' if unit else ''}, or with a unit that fits, the lower one first"
             return None, [f"limit of {name} is {given}: give {wanted}"]
         return Settled(found, *ends, name, unit), []
@@ -145,7 +145,7 @@ class Limit:
 class Settled:
     """A limit in SI."""
 
-    what: Sum
+    what: WeightedSum
     lower: float
     upper: float
     name: str
@@ -170,5 +170,5 @@ def limit(what: Any, lower: Any = None, upper: Any = None, *, name: str = "") ->
     name, what the report calls it. One of several values, as cw.jerk or cw.slope, is within its bounds with all.
     """
     if not isinstance(name, str):
-        raise UseError("limit", [f"name is {shown(name)}: give a string"])
+        raise UseError("limit", [f"name is {quote(name)}: give a string"])
     return Limit(what, lower, upper, name)

@@ -10,17 +10,17 @@ from numpy.typing import NDArray
 from clutchwork.base.extras import need
 from clutchwork.calibration.moves import Moves
 from clutchwork.calibration.rows import Row, rows_of, size_of
-from clutchwork.calibration.terms import Given, SquaredSlope
+from clutchwork.calibration.terms import SquaredSlope, TermData
 from clutchwork.calibration.together import VALUE
 
 if TYPE_CHECKING:
     from clutchwork.calibration.limits import Settled
-    from clutchwork.calibration.problem import Problem
+    from clutchwork.calibration.problem import CalibrationProblem
 
 Array = NDArray[np.float64]
 
 
-def is_linear_table(problem: Problem, stem: str) -> bool:
+def is_linear_table(problem: CalibrationProblem, stem: str) -> bool:
     """Whether slopes of a table depend linearly on the unknowns: its times stay, its values are free one by one."""
     times = {one.name for one in problem.curves[stem].times}
     values = {one.name for one in problem.curves[stem].values}
@@ -30,7 +30,7 @@ def is_linear_table(problem: Problem, stem: str) -> bool:
     )
 
 
-def is_linear(problem: Problem, limit: Settled) -> bool:
+def is_linear(problem: CalibrationProblem, limit: Settled) -> bool:
     """Whether a limit is linear in the unknowns, the same in all samples of production."""
     what = limit.what
     scattered = {name for one in problem.scatter for name in one.numbers}
@@ -41,18 +41,18 @@ def is_linear(problem: Problem, limit: Settled) -> bool:
     return plain and all(is_linear_table(problem, stem) for stem in what.tables)
 
 
-def without_run(problem: Problem) -> Given:
+def without_run(problem: CalibrationProblem) -> TermData:
     """What terms that need no run are computed from, at the start."""
     moves = Moves(problem.unknowns, problem.numbers)
     numbers = moves.apply(problem.base, problem.start)
     places = {name: at for at, name in enumerate(problem.numbers)}
-    return Given(np.zeros(0), np.zeros((0, len(numbers))), numbers, places, problem.curves, problem.span)
+    return TermData(np.zeros(0), np.zeros((0, len(numbers))), numbers, places, problem.curves, problem.span)
 
 
-class Linear:
+class LinearLimits:
     """All linear limits: A y <= b over unknowns that go from 0 to 1 between their bounds."""
 
-    def __init__(self, problem: Problem) -> None:
+    def __init__(self, problem: CalibrationProblem) -> None:
         self.problem = problem
         self.width = problem.high - problem.low
         self.numbers = [number for number, limit in enumerate(problem.limits) if is_linear(problem, limit)]

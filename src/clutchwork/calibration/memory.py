@@ -17,17 +17,17 @@ from clutchwork.base.writing import put
 from clutchwork.calibration.outcome import Outcome
 
 if TYPE_CHECKING:
-    from clutchwork.calibration.problem import Problem
+    from clutchwork.calibration.problem import CalibrationProblem
 
 FORMAT = "clutchwork calibration 2"
 # s between two writings
 PAUSE = 1.0
 
 
-class Memory:
+class Checkpoint:
     """Nothing is kept where there is no file."""
 
-    def __init__(self, path: Path | None, problem: Problem, settings: Iterable[Any]) -> None:
+    def __init__(self, path: Path | None, problem: CalibrationProblem, settings: Iterable[Any]) -> None:
         self.path, self.lock, self.written = path, Lock(), 0.0
         self.key = _key(problem, settings)
         self.before = _read(path, self.key) if path is not None and path.exists() else {}
@@ -49,7 +49,7 @@ class Memory:
             put(self.path, json.dumps(data, indent=1))
 
 
-def _key(problem: Problem, settings: Iterable[Any]) -> str:
+def _key(problem: CalibrationProblem, settings: Iterable[Any]) -> str:
     """The same for the same search alone."""
     parts = (problem.system.to_bytes(), *(repr(one).encode() for one in (*problem.identity, *settings)))
     return hashlib.sha256(b"\0".join(parts)).hexdigest()

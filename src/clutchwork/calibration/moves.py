@@ -15,7 +15,7 @@ Places = NDArray[np.intp]
 
 
 @dataclass(frozen=True)
-class Unknown:
+class Variable:
     """One unknown: what it does to which numbers, and its bounds."""
 
     name: str
@@ -29,7 +29,7 @@ class Unknown:
 class Moves:
     """How a vector of unknowns changes a vector of numbers: values first, then factors, then shifts."""
 
-    def __init__(self, unknowns: Sequence[Unknown], numbers: Sequence[str]) -> None:
+    def __init__(self, unknowns: Sequence[Variable], numbers: Sequence[str]) -> None:
         place = {name: at for at, name in enumerate(numbers)}
         pairs = {
             kind: [

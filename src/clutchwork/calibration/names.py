@@ -11,21 +11,21 @@ from clutchwork.gradients.parameters import parameters
 
 if TYPE_CHECKING:
     from clutchwork.assembly.system import System
-    from clutchwork.gradients.parameters import Parameter
+    from clutchwork.gradients.parameters import Tunable
 
 RANGE = re.compile(r"(?P<table>.+)\[(?P<first>\d*):(?P<last>\d*)\]")
 
 
 @dataclass(frozen=True)
-class Curve:
+class TimeTable:
     """A table of a model over time."""
 
     stem: str
-    times: tuple[Parameter, ...]
-    values: tuple[Parameter, ...]
+    times: tuple[Tunable, ...]
+    values: tuple[Tunable, ...]
 
 
-def numbers(system: System, name: Any) -> tuple[Parameter, ...]:
+def numbers(system: System, name: Any) -> tuple[Tunable, ...]:
     """The numbers that a name stands for; UseError where there are none."""
     found = RANGE.fullmatch(name) if isinstance(name, str) else None
     if found is None:
@@ -38,6 +38,6 @@ def numbers(system: System, name: Any) -> tuple[Parameter, ...]:
     return listed[first - 1 : last]
 
 
-def curve(system: System, stem: str) -> Curve:
+def curve(system: System, stem: str) -> TimeTable:
     """The table of a name; UseError where it is none over time."""
-    return Curve(stem, parameters(system, [f"{stem}.times"]), parameters(system, [f"{stem}.values"]))
+    return TimeTable(stem, parameters(system, [f"{stem}.times"]), parameters(system, [f"{stem}.values"]))

@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 
 from clutchwork.base.classes import dataclass
 from clutchwork.base.extras import need
-from clutchwork.calibration.rows import Block, Row
+from clutchwork.calibration.rows import ConstraintBlock, Row
 
 if TYPE_CHECKING:
     from clutchwork.calibration.scaled import Scaled
@@ -44,7 +44,7 @@ def certificate(scaled: Scaled, y: Array) -> Certificate:
     """Of scaled unknowns."""
     count, own = scaled.count, len(scaled.width)
     matrix, ends = scaled.linear
-    block = Block(scaled.rows)
+    block = ConstraintBlock(scaled.rows)
     values = np.concatenate([scaled.values(y, block), ends - matrix @ y])
     slopes = np.vstack([scaled.slopes(y, block), -matrix])
     rows = [*block.rows, *scaled.flat.rows]

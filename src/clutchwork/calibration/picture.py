@@ -6,7 +6,7 @@ from collections.abc import Iterator, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from clutchwork.calibration.terms import Jerk, Plain, RmsJerk, Slope, SquaredSlope
+from clutchwork.calibration.terms import Jerk, OutputTerm, RmsJerk, SquaredSlope, TableSlope
 from clutchwork.results.plot.compare import compare
 
 if TYPE_CHECKING:
@@ -41,9 +41,9 @@ def _signals(found: Calibration) -> Iterator[str]:
 def _of(term: Any) -> Iterator[str]:
     if isinstance(term, Jerk | RmsJerk):
         yield f"{term.shaft}.acceleration"
-    elif isinstance(term, Slope | SquaredSlope):
+    elif isinstance(term, TableSlope | SquaredSlope):
         yield term.stem
-    elif isinstance(term, Plain):
+    elif isinstance(term, OutputTerm):
         contact = getattr(term.output, "contact", "")
         owner = contact or str(getattr(term.output, "signal", "")).rpartition(".")[0]
         yield from (f"{contact}.slip", f"{contact}.torque") if contact else (str(getattr(term.output, "signal", "")),)

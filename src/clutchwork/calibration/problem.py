@@ -12,12 +12,12 @@ from numpy.typing import NDArray
 from clutchwork.base.classes import dataclass
 from clutchwork.base.errors import ModelError, UseError
 from clutchwork.base.errors import Problem as Wrong
-from clutchwork.base.shown import shown
-from clutchwork.calibration.limits import Limit, Settled, Sum, summed
-from clutchwork.calibration.moves import Moves, Unknown
-from clutchwork.calibration.names import Curve, curve, numbers
+from clutchwork.base.quote import quote
+from clutchwork.calibration.limits import Limit, Settled, WeightedSum, summed
+from clutchwork.calibration.moves import Moves, Variable
+from clutchwork.calibration.names import TimeTable, curve, numbers
 from clutchwork.calibration.numbers import pair
-from clutchwork.calibration.terms import Span, SquaredSlope
+from clutchwork.calibration.terms import SquaredSlope, TimeSpan
 from clutchwork.calibration.together import FACTOR, VALUE, Together
 from clutchwork.gradients.parameters import changes
 from clutchwork.results.channels import channels
@@ -25,7 +25,7 @@ from clutchwork.sweeps.outputs import Integral, When
 
 if TYPE_CHECKING:
     from clutchwork.assembly.system import System
-    from clutchwork.gradients.parameters import Parameter
+    from clutchwork.gradients.parameters import Tunable
 
 Array = NDArray[np.float64]
 # of bounds, in shares of themselves: a start that is out by no more is at its bound
@@ -34,17 +34,17 @@ SUCH = "{'c1.pressure.values[2:]': (0.0, 8e5)}"
 
 
 @dataclass(frozen=True)
-class Problem:
+class CalibrationProblem:
     """A goal to be made least and limits to be held, by unknowns that move numbers of a model."""
 
     system: System
-    span: Span
-    unknowns: tuple[Unknown, ...]
-    scatter: tuple[Unknown, ...]
-    moved: tuple[Parameter, ...]  # the numbers that unknowns and scatter move
-    goal: Sum
+    span: TimeSpan
+    unknowns: tuple[Variable, ...]
+    scatter: tuple[Variable, ...]
+    moved: tuple[Tunable, ...]  # the numbers that unknowns and scatter move
+    goal: WeightedSum
     limits: tuple[Settled, ...]
-    curves: Mapping[str, Curve]
+    curves: Mapping[str, TimeTable]
     unit: str  # of the goal
     begin: Array | None = None  # where the search begins, where not at the values of the model
 
@@ -55,7 +55,7 @@ class Problem:
 
     @cached_property
     def base(self) -> Array:
-        """The numbers as the model has them."""
+        """Values of the numbers in the model."""
         return np.array([one.start for one in self.moved])
 
     @property
@@ -86,7 +86,7 @@ class Problem:
         return np.array([one.high for one in self.unknowns])
 
 
-class Units:
+class OutputUnits:
     """Units of outputs and tables of a System; what is not there is without one, and refused where it is run."""
 
     def __init__(self, system: System) -> None:
@@ -123,10 +123,10 @@ class Mistakes:
 
 
 def problem(
-    system: System, span: Span, free: Any, minimise: Any, subject_to: Any, scatter: Any
-) -> Problem:  # fmt: skip
+    system: System, span: TimeSpan, free: Any, minimise: Any, subject_to: Any, scatter: Any
+) -> CalibrationProblem:  # fmt: skip
     """What the arguments of a call mean; UseError names all that is wrong with them."""
-    mistakes, units = Mistakes(), Units(system)
+    mistakes, units = Mistakes(), OutputUnits(system)
     unknowns = _unknowns(system, "free", free, mistakes)
     spread = _unknowns(system, "scatter", scatter, mistakes) if scatter is not None else ([], {})
     goal, fault = summed(minimise)
@@ -146,15 +146,15 @@ def problem(
     if mistakes.found or goal is None:
         raise UseError("calibrate", list(dict.fromkeys(mistakes.found)))
     made = (tuple(unknowns[0]), tuple(spread[0]), tuple(moved.values()))
-    return Problem(system, span, *made, goal, tuple(limits), curves, goal.unit(units))
+    return CalibrationProblem(system, span, *made, goal, tuple(limits), curves, goal.unit(units))
 
 
-def _unknowns(system: System, what: str, given: Any, mistakes: Mistakes) -> tuple[list[Unknown], dict[str, Parameter]]:
+def _unknowns(system: System, what: str, given: Any, mistakes: Mistakes) -> tuple[list[Variable], dict[str, Tunable]]:
     """Unknowns or scatters that a mapping means, and the numbers that they move by name."""
     if not isinstance(given, Mapping) or not given:
-        mistakes.found.append(f"{what} is {shown(given)}: give names with their bounds, {SUCH}")
+        mistakes.found.append(f"{what} is {quote(given)}: give names with their bounds, {SUCH}")
         return [], {}
-    made, moved = list[Unknown](), dict[str, "Parameter"]()
+    made, moved = list[Variable](), dict[str, "Tunable"]()
     for name, ends in given.items():
         named = ends.names if isinstance(ends, Together) else (name,)
         found = [one for each in named for one in mistakes.caught(partial(numbers, system, each), ())]
@@ -163,26 +163,26 @@ def _unknowns(system: System, what: str, given: Any, mistakes: Mistakes) -> tupl
         for twice in dict.fromkeys(one for one in names if names.count(one) > 1):
             mistakes.found.append(f"{what} of {name!r} names {twice} twice; give it once")
         if isinstance(ends, Together):
-            made.append(Unknown(str(name), ends.kind, tuple(one.name for one in found), ends.low, ends.high))
+            made.append(Variable(str(name), ends.kind, tuple(one.name for one in found), ends.low, ends.high))
             continue
         for one in found:
             both = pair(ends, one.unit)
             if both is None:
                 wanted = f"(low, high){f' in {one.unit}' if one.unit else ''}, or with a unit that fits"
-                mistakes.found.append(f"{what} of {name!r} is {shown(ends)}: give {wanted}, the lower one first")
+                mistakes.found.append(f"{what} of {name!r} is {quote(ends)}: give {wanted}, the lower one first")
                 break
-            made.append(Unknown(one.name, VALUE, (one.name,), *both, one.unit))
+            made.append(Variable(one.name, VALUE, (one.name,), *both, one.unit))
     return made, moved
 
 
-def _twice(unknowns: Sequence[Unknown]) -> Iterable[str]:
+def _twice(unknowns: Sequence[Variable]) -> Iterable[str]:
     """Numbers that two unknowns set."""
     names = [one.name for one in unknowns if one.kind == VALUE]
     for name in dict.fromkeys(one for one in names if names.count(one) > 1):
         yield f"{name} is free twice; give it once"
 
 
-def _scattered(unknowns: Sequence[Unknown], scatter: Sequence[Unknown]) -> Iterable[str]:
+def _scattered(unknowns: Sequence[Variable], scatter: Sequence[Variable]) -> Iterable[str]:
     """Numbers that are free, and set by the scatter all the same."""
     free = {name for one in unknowns for name in one.numbers}
     for one in scatter:
@@ -193,7 +193,7 @@ def _scattered(unknowns: Sequence[Unknown], scatter: Sequence[Unknown]) -> Itera
             )
 
 
-def outside(unknowns: Sequence[Unknown], moved: Mapping[str, Parameter], what: str = "free") -> Iterable[str]:
+def outside(unknowns: Sequence[Variable], moved: Mapping[str, Tunable], what: str = "free") -> Iterable[str]:
     """Values of the model that are not between their bounds: the search begins there."""
     for one in unknowns:
         start = {VALUE: moved[one.numbers[0]].start, FACTOR: 1.0}.get(one.kind, 0.0) if one.numbers else one.low
@@ -206,21 +206,21 @@ def outside(unknowns: Sequence[Unknown], moved: Mapping[str, Parameter], what: s
             yield f"{what} of {one.name!r}: the model has {has}, outside of {ends}; give bounds around it{other}"
 
 
-def _restless(goal: Sum) -> Iterable[str]:
+def _restless(goal: WeightedSum) -> Iterable[str]:
     """A goal that is least without bound."""
     for one, weight in goal.terms:
         if isinstance(one, SquaredSlope) and weight < 0.0:
             yield f"minimise: the weight of {one.name} is {weight:g}: give one > 0"
 
 
-def _limits(given: Any, units: Units, mistakes: Mistakes) -> Iterable[Settled]:
+def _limits(given: Any, units: OutputUnits, mistakes: Mistakes) -> Iterable[Settled]:
     listed = [given] if isinstance(given, Limit) else given
     if not isinstance(listed, Iterable) or isinstance(listed, str | Mapping):
-        mistakes.found.append(f"subject_to is {shown(given)}: give a list of cw.limit('c1.heat', upper=4e4)")
+        mistakes.found.append(f"subject_to is {quote(given)}: give a list of cw.limit('c1.heat', upper=4e4)")
         return
     for one in listed:
         if not isinstance(one, Limit):
-            mistakes.found.append(f"{shown(one)} in subject_to is not a limit: give cw.limit('c1.heat', upper=4e4)")
+            mistakes.found.append(f"{quote(one)} in subject_to is not a limit: give cw.limit('c1.heat', upper=4e4)")
             continue
         found, faults = one.settled(units)
         mistakes.found += [f"subject_to: {fault}" for fault in faults]
@@ -228,7 +228,7 @@ def _limits(given: Any, units: Units, mistakes: Mistakes) -> Iterable[Settled]:
             yield found
 
 
-def refuse_bounds(found: Problem) -> None:
+def refuse_bounds(found: CalibrationProblem) -> None:
     """ModelError names all bounds with which the model cannot be run.
 
     Times of tables are left out: with those of their neighbours moved they may be right.
@@ -244,7 +244,9 @@ def refuse_bounds(found: Problem) -> None:
         raise ModelError(list(dict.fromkeys(problems)), found.system.name)
 
 
-def _refused(found: Problem, unknowns: Sequence[Unknown], moved: Sequence[Unknown], side: str) -> tuple[Wrong, ...]:
+def _refused(
+    found: CalibrationProblem, unknowns: Sequence[Variable], moved: Sequence[Variable], side: str
+) -> tuple[Wrong, ...]:
     """What is wrong with the model where some unknowns are at one side of their bounds."""
     moves = Moves(unknowns, found.numbers)
     x = moves.start(found.base)
@@ -259,7 +261,7 @@ def _refused(found: Problem, unknowns: Sequence[Unknown], moved: Sequence[Unknow
     return ()
 
 
-def changed_by(found: Problem, numbers: Array, names: Iterable[str]) -> dict[str, Any]:
+def changed_by(found: CalibrationProblem, numbers: Array, names: Iterable[str]) -> dict[str, Any]:
     """What `System.changed` takes for some of the numbers."""
     wanted = set(names)
     places = [place for place, one in enumerate(found.moved) if one.name in wanted]

@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 from clutchwork.base.above import above
 from clutchwork.base.classes import dataclass
 from clutchwork.base.errors import ClutchworkError, UseError, near
-from clutchwork.base.shown import shown
+from clutchwork.base.quote import quote
 from clutchwork.calibration import words
 from clutchwork.calibration.corners import left
 from clutchwork.calibration.evaluate import Evaluator
@@ -30,8 +30,8 @@ from clutchwork.run.simulation import simulate
 if TYPE_CHECKING:
     from clutchwork.assembly.system import System
     from clutchwork.calibration.limits import Settled
-    from clutchwork.calibration.problem import Problem
-    from clutchwork.calibration.search import Search
+    from clutchwork.calibration.problem import CalibrationProblem
+    from clutchwork.calibration.search import MultiStartSearch
     from clutchwork.declare.options import Options
     from clutchwork.results.plot.canvas import Picture
     from clutchwork.results.trajectory import Trajectory
@@ -55,7 +55,7 @@ class CalibrationInterrupted(KeyboardInterrupt):
 
 
 @dataclass(frozen=True)
-class Asked:
+class SearchSettings:
     """How it was searched for."""
 
     options: Options
@@ -83,8 +83,8 @@ class Calibration:
     small change makes the goal less; `message` says what stands in the way. `print(found)` shows it all.
     """
 
-    problem: Problem = field(repr=False)
-    asked: Asked = field(repr=False)
+    problem: CalibrationProblem = field(repr=False)
+    asked: SearchSettings = field(repr=False)
     x: Array
     goal: tuple[float, float]  # with the values of the model, and with those that were found
     limits: tuple[Held, ...]
@@ -188,7 +188,7 @@ class Calibration:
     def __getitem__(self, name: str) -> float:
         """A value by name; KeyError with a near name where there is none."""
         if name not in self.values:
-            raise KeyError(f"no unknown {shown(name)}{near(name, self.names)}")
+            raise KeyError(f"no unknown {quote(name)}{near(name, self.names)}")
         return self.values[name]
 
     def __str__(self) -> str:
@@ -227,13 +227,13 @@ class Calibration:
         """A limit by name; UseError where there is none, or more than one."""
         known = [one.name for one in self.problem.limits]
         if name not in known:
-            raise UseError("calibration", [f"no limit {shown(name)}{near(name, known, f'there are {known}')}"])
+            raise UseError("calibration", [f"no limit {quote(name)}{near(name, known, f'there are {known}')}"])
         if known.count(name) > 1:
-            raise UseError("calibration", [f"{known.count(name)} limits are called {shown(name)}: give each a name="])
+            raise UseError("calibration", [f"{known.count(name)} limits are called {quote(name)}: give each a name="])
         return self.problem.limits[known.index(name)]
 
 
-def found_by(search: Search, asked: Asked) -> Calibration:
+def found_by(search: MultiStartSearch, asked: SearchSettings) -> Calibration:
     """The result of a search; CalibrationError where it found nothing."""
     outcomes = tuple(search.found[number] for number in sorted(search.found))
     best = min((one for one in outcomes if not one.fault), key=lambda one: one.rank, default=None)
@@ -270,6 +270,6 @@ def _held(limit: Settled, before: Array, after: Array, proof: Certificate, numbe
     return Held(limit.name, limit.unit, *bounds, bool(mine), not limit.violation(after) <= room, by_lower, by_upper)
 
 
-def with_limit(problem: Problem, old: Settled, new: Settled) -> Problem:
+def with_limit(problem: CalibrationProblem, old: Settled, new: Settled) -> CalibrationProblem:
     """The problem with one limit in place of another."""
     return replace(problem, limits=tuple(new if one is old else one for one in problem.limits))

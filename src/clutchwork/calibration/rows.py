@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 if TYPE_CHECKING:
-    from clutchwork.calibration.evaluate import Point
+    from clutchwork.calibration.evaluate import Evaluation
     from clutchwork.calibration.limits import Settled
 
 Array = NDArray[np.float64]
@@ -49,7 +49,7 @@ def size_of(limit: Settled) -> float:
     return max(abs(one) for one in (limit.lower, limit.upper) if np.isfinite(one))
 
 
-class Block:
+class ConstraintBlock:
     """Rows as arrays: what must not be negative, or must be zero in equations."""
 
     def __init__(self, rows: Sequence[Row]) -> None:
@@ -61,13 +61,13 @@ class Block:
         self.signs = np.where(self.equal, -1.0, table[:, 3])
         self.goal = table[:, 5] < 0.0
 
-    def values(self, point: Point, y: Array) -> Array:
+    def values(self, point: Evaluation, y: Array) -> Array:
         """At scaled unknowns."""
         found = point.values[self.samples, self.places]
         made: Array = self.signs * (self.bounds - found) / self.scales
         return np.where(self.goal, y[-1] - found / self.scales, made)
 
-    def slopes(self, point: Point, width: Array, count: int) -> Array:
+    def slopes(self, point: Evaluation, width: Array, count: int) -> Array:
         """Their derivatives by the scaled unknowns."""
         made = np.zeros((len(self.rows), count))
         factor = -(self.signs / self.scales)[:, None]

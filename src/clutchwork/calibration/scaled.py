@@ -12,12 +12,12 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from clutchwork.calibration.linear import Linear, is_linear_table, without_run
-from clutchwork.calibration.rows import Block, Row, measure, rows_of, size_of
+from clutchwork.calibration.linear import LinearLimits, is_linear_table, without_run
+from clutchwork.calibration.rows import ConstraintBlock, Row, measure, rows_of, size_of
 from clutchwork.calibration.terms import SquaredSlope
 
 if TYPE_CHECKING:
-    from clutchwork.calibration.evaluate import Evaluator, Point
+    from clutchwork.calibration.evaluate import Evaluation, Evaluator
 
 Array = NDArray[np.float64]
 # how far the first search goes, in shares of the bounds
@@ -43,7 +43,7 @@ class Scaled:
     ) -> None:  # fmt: skip
         self.evaluator, self.problem = evaluator, evaluator.problem
         self.samples, self.averaged = list(samples.chosen), samples.averaged
-        self.flat, self._scales = Linear(self.problem), scales
+        self.flat, self._scales = LinearLimits(self.problem), scales
         self.width = self.flat.width
         self.first = self.last = evaluator.at(start, self.samples)
         goal = evaluator.parts[0]
@@ -64,14 +64,14 @@ class Scaled:
         made: Array = self.problem.low + np.clip(y[: len(self.width)], 0.0, 1.0) * self.width
         return np.minimum(made, self.problem.high)
 
-    def point(self, y: Array) -> Point:
+    def point(self, y: Array) -> Evaluation:
         """What is known there; remembered where it is fine, for the values of one that is not."""
         found = self.evaluator.at(self.to_x(y), self.samples)
         if found.is_fine:
             self.last = found
         return found
 
-    def tried(self, y: Array) -> Point:
+    def tried(self, y: Array) -> Evaluation:
         """Values without a gradient, for much less work."""
         return self.evaluator.tried(self.to_x(y), self.samples)
 
@@ -81,7 +81,7 @@ class Scaled:
         """The goal; large where the run has no value or no gradient, so that a solver goes back."""
         return self.goal_at(self.point(y), y)
 
-    def goal_at(self, found: Point, y: Array) -> float:
+    def goal_at(self, found: Evaluation, y: Array) -> float:
         """The goal at a point that is known."""
         if not found.is_fine:
             return REFUSED + abs(float(y[-1]))
@@ -125,7 +125,7 @@ class Scaled:
         """Begin somewhere, and go no further than so much of the bounds, where no curvature is known."""
         self.start, self.reach = self.lifted(y, self.point(y)), reach
 
-    def lifted(self, y: Array, found: Point) -> Array:
+    def lifted(self, y: Array, found: Evaluation) -> Array:
         """The same unknowns, and the least bound of the values of the goal where it has several."""
         made = y.copy()
         if self.worst and found.is_fine:
@@ -178,16 +178,16 @@ class Scaled:
         both = [*own, *(Row(0, row, 0.0, 1.0, self.goal_scale, -1) for row in goal)]
         return [one._replace(sample=sample) for sample in range(max(len(self.samples), 1)) for one in both]
 
-    def values(self, y: Array, block: Block) -> Array:
+    def values(self, y: Array, block: ConstraintBlock) -> Array:
         """What must not be negative, or must be zero in equations."""
         self.point(y)
         return self.values_at(self.last, y, block)
 
-    def values_at(self, found: Point, y: Array, block: Block) -> Array:
+    def values_at(self, found: Evaluation, y: Array, block: ConstraintBlock) -> Array:
         """The same at a point that is known."""
         return block.values(found, y)
 
-    def within(self, block: Block, values: Array, slopes: Array, reach: float) -> NDArray[np.bool_]:
+    def within(self, block: ConstraintBlock, values: Array, slopes: Array, reach: float) -> NDArray[np.bool_]:
         """Rows that matter within a box, as far as their gradients say."""
         own = len(self.width)
         change = reach * np.sum(np.abs(slopes[:, :own]), axis=1)
@@ -196,7 +196,7 @@ class Scaled:
         made: NDArray[np.bool_] = block.equal | (values <= change + more)
         return made
 
-    def slopes(self, y: Array, block: Block) -> Array:
+    def slopes(self, y: Array, block: ConstraintBlock) -> Array:
         """Their derivatives."""
         self.point(y)
         return block.slopes(self.last, self.width, self.count)

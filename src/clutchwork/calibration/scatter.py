@@ -20,8 +20,8 @@ from clutchwork.calibration.scaled import Samples, Scaled
 
 if TYPE_CHECKING:
     from clutchwork.calibration.evaluate import Evaluator
-    from clutchwork.calibration.moves import Unknown
-    from clutchwork.calibration.problem import Problem
+    from clutchwork.calibration.moves import Variable
+    from clutchwork.calibration.problem import CalibrationProblem
 
 Array = NDArray[np.float64]
 Solve = Callable[[Scaled], Array]
@@ -46,7 +46,7 @@ class Scatter:
     worst: bool
 
     @classmethod
-    def of(cls, problem: Problem, count: int, seed: int, worst: bool) -> Scatter:
+    def of(cls, problem: CalibrationProblem, count: int, seed: int, worst: bool) -> Scatter:
         """So many samples of a problem, and corners."""
         nominal = Moves(problem.scatter, problem.numbers).start(problem.base)
         ends = tuple(corners(problem.scatter))
@@ -61,14 +61,14 @@ class Scatter:
         return Samples((*even, *few), len(even), self.worst)
 
 
-def corners(unknowns: Sequence[Unknown]) -> list[Array]:
+def corners(unknowns: Sequence[Variable]) -> list[Array]:
     """All ends of what scatters together, where that are not many: what gets worse all the way is worst there."""
     if len(unknowns) > MOST_CORNERS:
         return []
     return [np.array(one) for one in product(*((one.low, one.high) for one in unknowns))]
 
 
-def drawn(unknowns: Sequence[Unknown], count: int, seed: int) -> tuple[Array, ...]:
+def drawn(unknowns: Sequence[Variable], count: int, seed: int) -> tuple[Array, ...]:
     """Samples between the bounds of what scatters, spread evenly by a Sobol sequence, whatever order they come in."""
     if count < 1:
         return ()

@@ -12,31 +12,32 @@ import numpy as np
 from numpy.typing import NDArray
 
 from clutchwork.calibration.corners import left, left_behind
-from clutchwork.calibration.evaluate import Evaluator, Point
-from clutchwork.calibration.linear import Linear
+from clutchwork.calibration.evaluate import Evaluation, Evaluator
+from clutchwork.calibration.linear import LinearLimits
 from clutchwork.calibration.optimal import certificate
 from clutchwork.calibration.outcome import FEASIBLE, OPTIMAL, Outcome
 from clutchwork.calibration.rows import measure
 from clutchwork.calibration.scaled import Samples, Scaled
 from clutchwork.calibration.scatter import breaking, in_all, sobol, violations
-from clutchwork.calibration.solving import PILOTS, Solving, Way, best_of
+from clutchwork.calibration.solving import PILOTS, SearchMethod, Solving, best_of
 
 if TYPE_CHECKING:
-    from clutchwork.calibration.memory import Memory
-    from clutchwork.calibration.problem import Problem
+    from clutchwork.calibration.memory import Checkpoint
+    from clutchwork.calibration.problem import CalibrationProblem
 
 Array = NDArray[np.float64]
+Progress = Callable[[int], None] | None
 
 
-class Stopped(Exception):  # noqa: N818, it is caught where it is raised
+class SearchStopped(Exception):  # noqa: N818, it is caught where it is raised
     """Another thread was interrupted."""
 
 
-class Search:
+class MultiStartSearch:
     """All starts of a problem."""
 
     def __init__(
-        self, problem: Problem, function: object, way: Way, memory: Memory, told: Callable[[int], None] | None
+        self, problem: CalibrationProblem, function: object, way: SearchMethod, memory: Checkpoint, told: Progress
     ) -> None:
         self.problem, self.function, self.way, self.memory, self.told = problem, function, way, memory, told
         self.solving = Solving(way)
@@ -92,7 +93,7 @@ class Search:
             return
         more, evaluator = way.starts - 1, Evaluator(problem, self.function)
         shares = sobol(len(problem.unknowns), PILOTS * more, way.seed)
-        flat = Linear(problem)
+        flat = LinearLimits(problem)
         points = [flat.nearest(problem.low + share * flat.width) for share in shares]
         yield from best_of(evaluator, points, more)
 
@@ -118,7 +119,7 @@ class Search:
     def tell(self) -> None:
         """One more point was looked at."""
         if self.stop.is_set():
-            raise Stopped
+            raise SearchStopped
         self.asked += 1
         if self.told is not None:
             self.told(min(self.asked, self.way.starts * self.way.iterations))
@@ -127,7 +128,7 @@ class Search:
 class Keeper:
     """Keeps the best point of one start."""
 
-    def __init__(self, search: Search, evaluator: Evaluator, number: int, start: Array) -> None:
+    def __init__(self, search: MultiStartSearch, evaluator: Evaluator, number: int, start: Array) -> None:
         self.search, self.evaluator, self.number, self.start = search, evaluator, number, start
         self.scaled: Scaled | None = None
 
@@ -147,7 +148,7 @@ class Keeper:
 
         return solved
 
-    def see(self, point: Point) -> None:
+    def see(self, point: Evaluation) -> None:
         """A point that the solver asked for."""
         self.search.tell()
         if self.scaled is None or not point.is_fine or len(point.values) != max(len(self.scaled.samples), 1):
@@ -188,7 +189,7 @@ class Keeper:
         goal = max(scaled.judged(values), made.goal) if scaled.worst else made.goal
         return replace(made, violation=violation, goal=goal, samples=(*made.samples, *fine), whole=True)
 
-    def _outcome(self, point: Point, scaled: Scaled, ended: bool) -> Outcome:
+    def _outcome(self, point: Evaluation, scaled: Scaled, ended: bool) -> Outcome:
         over = violations(self.evaluator, scaled, point.values)
         found = (point.x, scaled.judged(point.values), float(np.max(over)))
         made = Outcome(self.number, self.start, *found, ended, self.evaluator.runs, scaled.scales)

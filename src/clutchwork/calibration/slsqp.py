@@ -12,8 +12,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from clutchwork.base.extras import need
-from clutchwork.calibration.ending import Ended, Ending
-from clutchwork.calibration.rows import Block, Row
+from clutchwork.calibration.ending import Ending, SearchEnded
+from clutchwork.calibration.rows import ConstraintBlock, Row
 from clutchwork.calibration.scaled import Scaled
 
 Array = NDArray[np.float64]
@@ -26,7 +26,7 @@ def slsqp(scaled: Scaled, ending: Ending, iterations: int) -> Array:
     by_z = whitened(scaled)
     matrix, ends = scaled.linear
     rows = _within(scaled)
-    blocks = [Block([one for one in rows if (one.sign == 0.0) == equal]) for equal in (True, False)]
+    blocks = [ConstraintBlock([one for one in rows if (one.sign == 0.0) == equal]) for equal in (True, False)]
 
     def to_y(z: Array) -> Array:
         made: Array = start + by_z @ z
@@ -54,7 +54,7 @@ def slsqp(scaled: Scaled, ending: Ending, iterations: int) -> Array:
     if len(ends):
         lines, room = -matrix @ by_z, ends - matrix @ start
         constraints.append({"type": "ineq", "fun": lambda z: room + lines @ z, "jac": lambda _: lines})
-    with suppress(Ended):
+    with suppress(SearchEnded):
         optimize.minimize(
             lambda z: scaled.goal(to_y(z)),
             np.zeros(count),
@@ -73,7 +73,7 @@ def _within(scaled: Scaled) -> list[Row]:
     """Rows that matter within the box, with as much again for what gradients change: thousands take long."""
     if scaled.curvature is not None:
         return scaled.rows
-    block, y = Block(scaled.rows), scaled.start
+    block, y = ConstraintBlock(scaled.rows), scaled.start
     near = scaled.within(block, scaled.values(y, block), scaled.slopes(y, block), 2.0 * scaled.reach)
     return [one for one, matters in zip(block.rows, near, strict=True) if matters]
 

@@ -9,15 +9,15 @@ import numpy as np
 from numpy.typing import NDArray
 
 from clutchwork.base.classes import dataclass
-from clutchwork.calibration.boxes import walked
 from clutchwork.calibration.ending import Ending
+from clutchwork.calibration.feasibility import Restoring
 from clutchwork.calibration.method import Solver
 from clutchwork.calibration.optimal import certificate
 from clutchwork.calibration.outcome import FEASIBLE
-from clutchwork.calibration.restoring import Restoring
 from clutchwork.calibration.rows import measure, size_of
 from clutchwork.calibration.scaled import FIRST_REACH, Samples, Scaled
 from clutchwork.calibration.scatter import Scatter, sobol
+from clutchwork.calibration.trust_region_lp import walked
 
 if TYPE_CHECKING:
     from clutchwork.calibration.evaluate import Evaluator
@@ -38,7 +38,7 @@ PILOTS = 8
 
 
 @dataclass(frozen=True)
-class Way:
+class SearchMethod:
     """How to search."""
 
     solver: Solver
@@ -60,7 +60,7 @@ class Way:
 class Solving:
     """The way from a start to its end."""
 
-    way: Way
+    way: SearchMethod
 
     def solved(self, scaled: Scaled) -> Array:
         """Where the search ends: the solver where all is smooth, limits first, then boxes where there are corners."""

@@ -13,37 +13,37 @@ from numpy.typing import NDArray
 
 from clutchwork.base.classes import dataclass
 from clutchwork.base.errors import UseError
-from clutchwork.base.shown import shown
+from clutchwork.base.quote import quote
 from clutchwork.calibration.numbers import number, pair
 from clutchwork.declare.calls import explained
 from clutchwork.results.felt import WINDOW, felt_jerk
 from clutchwork.sweeps.outputs import AtEnd, AtTimes, Computed, Extreme, Integral, Output, SquaredJerk, When
 
 if TYPE_CHECKING:
-    from clutchwork.calibration.names import Curve
-    from clutchwork.gradients.parameters import Parameter
+    from clutchwork.calibration.names import TimeTable
+    from clutchwork.gradients.parameters import Tunable
     from clutchwork.results.trajectory import Trajectory
 
 Array = NDArray[np.float64]
 OUTPUTS = (AtEnd, AtTimes, Extreme, Integral, SquaredJerk, When)
 
 
-class Span(NamedTuple):
+class TimeSpan(NamedTuple):
     """When a run begins and ends [s]."""
 
     begin: float
     end: float
 
 
-class Given(NamedTuple):
+class TermData(NamedTuple):
     """What a term is computed from."""
 
     values: Array  # of the outputs that it needs
     slopes: Array  # of these by the numbers, shape (outputs, numbers)
     numbers: Array
     places: Mapping[str, int]  # of the numbers by name
-    curves: Mapping[str, Curve]
-    span: Span
+    curves: Mapping[str, TimeTable]
+    span: TimeSpan
 
 
 def length(output: Any) -> int:
@@ -76,18 +76,18 @@ class Term(Protocol):
     def name(self) -> str:
         """What messages call it."""
 
-    def needs(self, span: Span) -> list[Any]:
+    def needs(self, span: TimeSpan) -> list[Any]:
         """The outputs of a run that it is made of."""
 
     def unit(self, units: UnitOf) -> str:
         """Its unit."""
 
-    def rows(self, given: Given) -> Rows:
+    def rows(self, given: TermData) -> Rows:
         """Its values, and their derivatives by the numbers."""
 
 
 @dataclass(frozen=True)
-class Plain:
+class OutputTerm:
     """An output of a run as it is; one at several instants has as many values."""
 
     output: Any
@@ -97,7 +97,7 @@ class Plain:
         """What messages call it."""
         return str(self.output.name)
 
-    def needs(self, span: Span) -> list[Any]:  # noqa: ARG002, others do
+    def needs(self, span: TimeSpan) -> list[Any]:  # noqa: ARG002, others do
         """Itself."""
         return [self.output]
 
@@ -105,7 +105,7 @@ class Plain:
         """That of the output."""
         return units.output(self.output)
 
-    def rows(self, given: Given) -> Rows:
+    def rows(self, given: TermData) -> Rows:
         """What the run gave."""
         return given.values, given.slopes
 
@@ -123,19 +123,19 @@ class Jerk:
         """What messages call it."""
         return f"jerk({self.shaft})"
 
-    def needs(self, span: Span) -> list[Any]:
+    def needs(self, span: TimeSpan) -> list[Any]:
         """Its speed at instants that lie a small part of a window apart."""
         (first, last), step = self.inside(span), self.window / PER_WINDOW
         count = int((last - first) / step * (1.0 + 1e-12))
         times = np.minimum(first + step * np.arange(count + 1), last)
         return [AtTimes(f"{self.shaft}.speed", tuple(times.tolist()))]
 
-    def inside(self, span: Span) -> tuple[float, float]:
+    def inside(self, span: TimeSpan) -> tuple[float, float]:
         """When it counts [s]."""
         first, last = self.between or span
         return max(first, span.begin), min(last, span.end)
 
-    def faults(self, span: Span) -> list[str]:
+    def faults(self, span: TimeSpan) -> list[str]:
         """Why there is no window in a run."""
         first, last = self.inside(span)
         if last - first >= 2.0 * self.window * (1.0 - 1e-9):
@@ -148,7 +148,7 @@ class Jerk:
         """Of its speed, over seconds squared."""
         return RATES.get(units.output(AtEnd(f"{self.shaft}.speed")), "")
 
-    def rows(self, given: Given) -> Rows:
+    def rows(self, given: TermData) -> Rows:
         """Two values for each window: of either sign, the larger one is the size."""
         # docs/theory/jerk.md (1)
         value, slope = (felt_jerk(one, self.window, PER_WINDOW) for one in (given.values, given.slopes))
@@ -156,7 +156,7 @@ class Jerk:
 
     def largest(self, run: Trajectory) -> float:
         """The largest of a run, for `sweep`; NaN where that did not reach its end, or has no two windows."""
-        span = Span(run.options.t_start, run.t_end)
+        span = TimeSpan(run.options.t_start, run.t_end)
         if not run.finished or self.faults(span):
             return float("nan")
         (speed,) = self.needs(span)
@@ -174,7 +174,7 @@ class RmsJerk:
         """What messages call it."""
         return f"rms_jerk({self.shaft})"
 
-    def needs(self, span: Span) -> list[Any]:  # noqa: ARG002, others do
+    def needs(self, span: TimeSpan) -> list[Any]:  # noqa: ARG002, others do
         """The integral of its square."""
         return [SquaredJerk(self.shaft)]
 
@@ -182,7 +182,7 @@ class RmsJerk:
         """Of its speed, over seconds squared."""
         return RATES.get(units.output(AtEnd(f"{self.shaft}.speed")), "")
 
-    def rows(self, given: Given) -> Rows:
+    def rows(self, given: TermData) -> Rows:
         """One value."""
         time = given.span.end - given.span.begin
         value = np.sqrt(given.values / time)
@@ -191,7 +191,7 @@ class RmsJerk:
 
 
 @dataclass(frozen=True)
-class Slope:
+class TableSlope:
     """Slopes of the pieces of a table."""
 
     stem: str
@@ -201,7 +201,7 @@ class Slope:
         """What messages call it."""
         return f"slope({self.stem})"
 
-    def needs(self, span: Span) -> list[Any]:  # noqa: ARG002, others do
+    def needs(self, span: TimeSpan) -> list[Any]:  # noqa: ARG002, others do
         """No run."""
         return []
 
@@ -209,7 +209,7 @@ class Slope:
         """Of the table, a second."""
         return f"{units.table(self.stem)}/s"
 
-    def rows(self, given: Given) -> Rows:
+    def rows(self, given: TermData) -> Rows:
         """One value for each piece."""
         step, by_step, rise, by_rise = _pieces(given, self.stem)
         value = rise / step
@@ -227,7 +227,7 @@ class SquaredSlope:
         """What messages call it."""
         return f"squared_slope({self.stem})"
 
-    def needs(self, span: Span) -> list[Any]:  # noqa: ARG002, others do
+    def needs(self, span: TimeSpan) -> list[Any]:  # noqa: ARG002, others do
         """No run."""
         return []
 
@@ -235,21 +235,21 @@ class SquaredSlope:
         """Of the table squared, a second."""
         return f"({units.table(self.stem)})2/s"
 
-    def rows(self, given: Given) -> Rows:
+    def rows(self, given: TermData) -> Rows:
         """One value."""
         step, by_step, rise, by_rise = _pieces(given, self.stem)
         slope = rise / step
         gradient = (2.0 * slope) @ by_rise - (slope**2) @ by_step
         return np.array([rise @ slope]), gradient[None, :]
 
-    def curvature(self, given: Given) -> Array:
+    def curvature(self, given: TermData) -> Array:
         """Its second derivative by the numbers where times stay."""
         step, _, _, by_rise = _pieces(given, self.stem)
         made: Array = 2.0 * (by_rise.T / step) @ by_rise
         return made
 
 
-def _pieces(given: Given, stem: str) -> tuple[Array, Array, Array, Array]:
+def _pieces(given: TermData, stem: str) -> tuple[Array, Array, Array, Array]:
     """Lengths and rises of the pieces of a table that take time, and their derivatives by the numbers."""
     table = given.curves[stem]
     sides = [_column(given, column) for column in (table.times, table.values)]
@@ -259,7 +259,7 @@ def _pieces(given: Given, stem: str) -> tuple[Array, Array, Array, Array]:
     return step[long], by_step[long], rise[long], by_rise[long]
 
 
-def _column(given: Given, column: Sequence[Parameter]) -> Rows:
+def _column(given: TermData, column: Sequence[Tunable]) -> Rows:
     """Times or values of a table as they are now, and their derivatives by the numbers."""
     made, slopes = np.array([one.start for one in column]), np.zeros((len(column), len(given.numbers)))
     for row, one in enumerate(column):
@@ -282,10 +282,10 @@ def jerk(shaft: str, window: Any = WINDOW, between: Any = None) -> Jerk:
     """
     length = number(window, "s")
     if length is None or length <= 0.0:
-        raise UseError("jerk", [f"window is {shown(window)}: give a time > 0 s, such as 0.05"])
+        raise UseError("jerk", [f"window is {quote(window)}: give a time > 0 s, such as 0.05"])
     ends = None if between is None else pair(between, "s")
     if between is not None and (ends is None or ends[1] - ends[0] < 2.0 * length):
-        raise UseError("jerk", [f"between is {shown(between)}: give two times [s], two windows apart or more"])
+        raise UseError("jerk", [f"between is {quote(between)}: give two times [s], two windows apart or more"])
     return Jerk(_named("jerk", shaft), length, ends)
 
 
@@ -299,12 +299,12 @@ def rms_jerk(shaft: str) -> RmsJerk:
 
 
 @explained("cw.slope", signal="'c1.pressure'")
-def slope(signal: str) -> Slope:
+def slope(signal: str) -> TableSlope:
     """The slopes of the pieces of a table for `calibrate`, in the unit of its values a second.
 
     Parameters: signal, the name of the table, such as "c1.pressure".
     """
-    return Slope(_named("slope", signal))
+    return TableSlope(_named("slope", signal))
 
 
 @explained("cw.squared_slope", signal="'c1.pressure'")
@@ -318,17 +318,17 @@ def squared_slope(signal: str) -> SquaredSlope:
 
 def _named(call: str, name: object) -> str:
     if not isinstance(name, str):
-        raise UseError(call, [f"{shown(name)} is not a name; give one such as 'c1.pressure'"])
+        raise UseError(call, [f"{quote(name)} is not a name; give one such as 'c1.pressure'"])
     return name
 
 
 def term(given: Any) -> Term | None:
     """The term that a goal or a limit means; None where it is none."""
     if isinstance(given, str):
-        return Plain(AtEnd(given))
-    if isinstance(given, Jerk | RmsJerk | Slope | SquaredSlope):
+        return OutputTerm(AtEnd(given))
+    if isinstance(given, Jerk | RmsJerk | TableSlope | SquaredSlope):
         return given
-    return Plain(given) if isinstance(given, OUTPUTS) else None
+    return OutputTerm(given) if isinstance(given, OUTPUTS) else None
 
 
 def is_computed(given: Any) -> bool:

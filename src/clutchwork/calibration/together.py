@@ -6,7 +6,7 @@ from collections.abc import Sequence
 
 from clutchwork.base.classes import dataclass
 from clutchwork.base.errors import UseError
-from clutchwork.base.shown import shown
+from clutchwork.base.quote import quote
 from clutchwork.calibration.numbers import pair
 from clutchwork.declare.calls import explained
 
@@ -41,15 +41,15 @@ def together(
     problems = list[str]()
     listed = (names,) if isinstance(names, str) else tuple(names) if isinstance(names, Sequence) else ()
     if not listed or not all(isinstance(one, str) for one in listed):
-        problems.append(f"names is {shown(names)}: give names such as ['F1.gain', 'F2.gain']")
+        problems.append(f"names is {quote(names)}: give names such as ['F1.gain', 'F2.gain']")
     if (factor is None) == (shift is None):
         problems.append("give either factor=(low, high) or shift=(low, high)")
     kind, given = (FACTOR, factor) if factor is not None else (SHIFT, shift)
     ends = pair(given, "1")
     if given is not None and ends is None:
-        problems.append(f"{kind} is {shown(given)}: give (low, high), the lower one first")
+        problems.append(f"{kind} is {quote(given)}: give (low, high), the lower one first")
     if kind == FACTOR and ends is not None and ends[0] <= 0.0:
-        problems.append(f"factor is {shown(given)}: both must be > 0")
+        problems.append(f"factor is {quote(given)}: both must be > 0")
     if problems or ends is None:
         raise UseError("together", problems)
     return Together(listed, kind, *ends)

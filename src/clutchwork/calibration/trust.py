@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 
 from clutchwork.base.extras import need
 from clutchwork.calibration.ending import Ending
-from clutchwork.calibration.rows import Block
+from clutchwork.calibration.rows import ConstraintBlock
 from clutchwork.calibration.scaled import Scaled
 from clutchwork.calibration.slsqp import whitened
 
@@ -27,7 +27,7 @@ def trust_constr(scaled: Scaled, ending: Ending, iterations: int) -> Array:
     start, by_z = scaled.start, whitened(scaled)
     own = len(scaled.width)
     matrix, ends = scaled.linear
-    block = Block(scaled.rows)
+    block = ConstraintBlock(scaled.rows)
 
     def to_y(z: Array) -> Array:
         made: Array = start + by_z @ z

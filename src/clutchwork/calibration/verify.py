@@ -9,8 +9,8 @@ from numpy.typing import NDArray
 
 from clutchwork.base.classes import dataclass
 from clutchwork.base.errors import UseError
-from clutchwork.base.shown import shown
-from clutchwork.base.text import columns
+from clutchwork.base.plural import columns
+from clutchwork.base.quote import quote
 from clutchwork.calibration.evaluate import Evaluator
 from clutchwork.calibration.scatter import drawn
 from clutchwork.gradients.differentiable import differentiable
@@ -65,7 +65,7 @@ def verify(found: Calibration, count: int, seed: int, threads: int | None) -> Ve
             "verify", ["nothing scatters in this calibration; give scatter={name: (low, high)} to calibrate"]
         )
     if not isinstance(count, int) or isinstance(count, bool) or count < 1:
-        raise UseError("verify", [f"samples is {shown(count)}: give a whole number from 1 on"])
+        raise UseError("verify", [f"samples is {quote(count)}: give a whole number of at least 1"])
     samples = drawn(problem.scatter, count, seed)
     outputs = {str(number): one for number, one in enumerate(problem.outputs)}
     function = differentiable(

@@ -6,7 +6,7 @@ from collections.abc import Iterator
 from math import floor, isfinite, log10
 from typing import TYPE_CHECKING, Protocol
 
-from clutchwork.base.text import columns, counted
+from clutchwork.base.plural import columns, counted
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
@@ -14,7 +14,7 @@ if TYPE_CHECKING:
     from clutchwork.calibration.held import Held
     from clutchwork.calibration.optimal import Certificate
     from clutchwork.calibration.outcome import Outcome
-    from clutchwork.calibration.problem import Problem
+    from clutchwork.calibration.problem import CalibrationProblem
 
 # values of a table with more lines are shown without the middle
 MOST_VALUES = 24
@@ -26,7 +26,7 @@ class Told(Protocol):
     """What is said of a calibration."""
 
     @property
-    def problem(self) -> Problem:
+    def problem(self) -> CalibrationProblem:
         """What was asked for."""
 
     @property

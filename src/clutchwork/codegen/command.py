@@ -10,7 +10,7 @@ from typing import Any
 
 from clutchwork.base import shell
 from clutchwork.declare.options import OPTIONS
-from clutchwork.declare.speech import words_of_files
+from clutchwork.declare.wording import words_of_files
 from clutchwork.run.flags import DEFAULTS, add_options, given_options
 
 # the grid of an exported run has a spacing

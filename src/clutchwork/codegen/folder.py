@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 from clutchwork.base.errors import UseError
 from clutchwork.base.paths import fitting
 from clutchwork.base.paths import folder as made_folder
-from clutchwork.base.shown import shown
+from clutchwork.base.quote import quote
 from clutchwork.base.writing import put
 from clutchwork.codegen.model import Exported, chosen, files
 from clutchwork.codegen.sources import sources
@@ -47,7 +47,7 @@ def export_c(
     """
     where = fitting("cw.export_c", folder, "c")
     if not (isinstance(model, Driveline) or hasattr(model, "settings")):
-        raise UseError("cw.export_c", [f"model is {shown(model)}: give a Driveline or a System"])
+        raise UseError("cw.export_c", [f"model is {quote(model)}: give a Driveline or a System"])
     system = model if not isinstance(model, Driveline) else model.assemble()
     end, made = merged(system.settings, changes if t_end is None else {**changes, "t_end": t_end}, options)
     if made.times is not None:

@@ -6,8 +6,8 @@ import argparse
 from pathlib import Path
 from typing import Any
 
+from clutchwork.base.plural import columns
 from clutchwork.base.shell import DONE, add_command, add_json, add_model, tell, tell_json
-from clutchwork.base.text import columns
 from clutchwork.command.models import add_set, system_of
 
 EXAMPLES = (

@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from clutchwork.base.shell import DONE, FilesError, add_command, add_json, tell, tell_json, writable, wrote
-from clutchwork.declare.speech import words_of_files
+from clutchwork.declare.wording import words_of_files
 
 if TYPE_CHECKING:
     from clutchwork.results.trajectory import Trajectory

@@ -7,10 +7,10 @@ from collections.abc import Iterator, Mapping
 from typing import Any
 
 from clutchwork.base.errors import nearest
+from clutchwork.base.plural import columns, counted
+from clutchwork.base.quote import listed
 from clutchwork.base.shell import DONE, Example, add_command, add_json, paragraphs, tell, tell_json, width
-from clutchwork.base.shown import listed
-from clutchwork.base.text import columns, counted
-from clutchwork.declare.docs import Described, described, summary, words
+from clutchwork.declare.docs import FieldDescription, described, summary, words
 from clutchwork.declare.purposes import ELEMENT_ROLES, groups
 from clutchwork.declare.schema import Role, specs
 from clutchwork.declare.unit_table import UnitRow, unit_table
@@ -174,7 +174,7 @@ def _example(cls: Any) -> str:
     return toml_example(cls)
 
 
-def _about(told: Described) -> str:
+def _about(told: FieldDescription) -> str:
     """Sort, unit, bound and default in a few words."""
     unit = f"[{told.unit}]" if told.unit and told.unit != "1" else ""
     sort = f"one of {told.bound}" if told.sort == "choice" else " ".join(filter(None, (told.sort, unit, told.bound)))
@@ -182,7 +182,7 @@ def _about(told: Described) -> str:
 
 
 def _data(cls: Any, *, whole: bool = False) -> dict[str, Any]:
-    """The same as plain data."""
+    """A declaration as plain data."""
     data = {"type": cls.kind, "class": cls.__name__, "summary": summary(cls)}
     if not whole:
         return data

@@ -8,9 +8,9 @@ from dataclasses import asdict
 from functools import reduce
 from typing import TYPE_CHECKING, Any
 
+from clutchwork.base.plural import columns, counted
+from clutchwork.base.quote import LONGEST, shortened
 from clutchwork.base.shell import paragraphs, width
-from clutchwork.base.shown import LONGEST, shortened
-from clutchwork.base.text import columns, counted
 from clutchwork.model.changes import all_names, targets_of
 from clutchwork.results.channels import channels
 from clutchwork.results.gears import named_closed

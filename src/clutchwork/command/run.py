@@ -28,7 +28,7 @@ from clutchwork.base.shell import (
 )
 from clutchwork.command.models import add_set, system_of
 from clutchwork.command.progress import bar
-from clutchwork.declare.speech import words_of_files
+from clutchwork.declare.wording import words_of_files
 from clutchwork.run.flags import add_options, given_options
 
 if TYPE_CHECKING:
@@ -135,7 +135,7 @@ def run_command(asked: argparse.Namespace) -> int:
         given |= begin_of(system, start, given) if start is not None else {}
         t_end, options = merged(system.settings, given)
         known = channels(system, options.angles, options.work)
-        chosen = Chosen(chosen_signals(known, asked.signals or ["*"]), given_units(asked.units, known))
+        chosen = SignalFiles(chosen_signals(known, asked.signals or ["*"]), given_units(asked.units, known))
     names = chosen.names
     _say_unused(asked)
     run, code = _simulated(system, t_end, options, start, hidden=asked.quiet or asked.json)
@@ -181,14 +181,14 @@ def _simulated(
     return run, DONE if run.finished else STOPPED
 
 
-class Chosen(NamedTuple):
+class SignalFiles(NamedTuple):
     """What files of signals hold."""
 
     names: tuple[str, ...]
     units: dict[str, str]  # other ones than those of SI
 
 
-Writer = Callable[["Trajectory", Path, Chosen], object]
+Writer = Callable[["Trajectory", Path, SignalFiles], object]
 
 
 def _wanted(asked: argparse.Namespace) -> dict[Path, Writer]:
@@ -209,28 +209,28 @@ def _wanted(asked: argparse.Namespace) -> dict[Path, Writer]:
     return {path: write for path, write in named if path is not None}
 
 
-def _plot(run: Trajectory, path: Path, chosen: Chosen) -> None:
+def _plot(run: Trajectory, path: Path, chosen: SignalFiles) -> None:
     # what only tables have
     run.plot(path, units={name: unit for name, unit in chosen.units.items() if name != "time"})
 
 
-def _sankey(run: Trajectory, path: Path, _chosen: Chosen) -> None:
+def _sankey(run: Trajectory, path: Path, _chosen: SignalFiles) -> None:
     run.sankey(path)
 
 
-def _csv(run: Trajectory, path: Path, chosen: Chosen) -> None:
+def _csv(run: Trajectory, path: Path, chosen: SignalFiles) -> None:
     run.to_csv(path, chosen.names, units=chosen.units)
 
 
-def _events(run: Trajectory, path: Path, _chosen: Chosen) -> None:
+def _events(run: Trajectory, path: Path, _chosen: SignalFiles) -> None:
     run.events.to_csv(path)
 
 
-def _save(run: Trajectory, path: Path, _chosen: Chosen) -> None:
+def _save(run: Trajectory, path: Path, _chosen: SignalFiles) -> None:
     run.save(path)
 
 
-def _save_state(run: Trajectory, path: Path, _chosen: Chosen) -> None:
+def _save_state(run: Trajectory, path: Path, _chosen: SignalFiles) -> None:
     run.state().save(path)
 
 
@@ -244,7 +244,7 @@ def _writer(path: Path) -> Writer:
     return lambda run, path, chosen: run.write(path, chosen.names, units=chosen.units)
 
 
-def _write(run: Trajectory, chosen: Chosen, wanted: dict[Path, Writer]) -> list[Path]:
+def _write(run: Trajectory, chosen: SignalFiles, wanted: dict[Path, Writer]) -> list[Path]:
     """Write the wanted files; their paths."""
     for path, write in wanted.items():
         write(run, path, chosen)

@@ -1,4 +1,4 @@
-"""What a component may say of itself: fields, units, nodes, roles. The layout of the core and the options of a run.
+"""Declarations of components: fields, units, nodes, roles. The layout of the core and the options of a run.
 
 A declaration imports what it needs from here; the modules inside import each other.
 """
@@ -45,7 +45,7 @@ from clutchwork.declare.schema import param as param
 from clutchwork.declare.schema import port as port
 from clutchwork.declare.schema import signal as signal
 from clutchwork.declare.schema import text as text
-from clutchwork.declare.speech import say as say
+from clutchwork.declare.wording import say as say
 
 if TYPE_CHECKING:
     from clutchwork.declare.rational import exact as exact

@@ -11,10 +11,10 @@ from typing import Any, TypeVar
 
 from clutchwork.base.classes import dataclass
 from clutchwork.base.errors import UseError, near, nearest
-from clutchwork.base.shown import listed, shown
-from clutchwork.base.text import counted
+from clutchwork.base.plural import counted
+from clutchwork.base.quote import listed, quote
+from clutchwork.declare.expected_value import wanted
 from clutchwork.declare.schema import specs
-from clutchwork.declare.wanted import wanted
 
 OWNERS = ("self", "cls")
 F = TypeVar("F", bound=Callable[..., Any])
@@ -112,7 +112,7 @@ def _explained(cls: Any, args: tuple[Any, ...], named: Mapping[str, Any]) -> Non
 
 def _name(args: tuple[Any, ...], named: Mapping[str, Any]) -> str:
     name = args[0] if args else named.get("name")
-    return shown(name).replace("'", '"') if isinstance(name, str) else ""
+    return quote(name).replace("'", '"') if isinstance(name, str) else ""
 
 
 def _meanings(cls: type) -> dict[str, str]:
@@ -148,7 +148,7 @@ def _problems(
     for name in unknown:
         # the list of all is only said once, and not where a near one says enough
         said = near(name, known)
-        yield f"unknown field {shown(name)}{said or (fields and f'; {fields}')}"
+        yield f"unknown field {quote(name)}{said or (fields and f'; {fields}')}"
         fields = fields if said else ""
     filled = min(len(args), len(by_place)) if any_number else len(args)
     for p in parameters[filled:]:

@@ -8,6 +8,7 @@ from dataclasses import MISSING, Field, fields
 from inspect import Parameter, Signature
 from typing import Any, NamedTuple
 
+from clutchwork.base.classes import LazySignature
 from clutchwork.declare.schema import Spec, specs
 
 SORTS = {
@@ -23,7 +24,7 @@ SORTS = {
 NAME = ("name", "(text, required): its path in results and messages")
 
 
-class Described(NamedTuple):
+class FieldDescription(NamedTuple):
     """A field in words; empty where there is nothing to say."""
 
     name: str
@@ -34,11 +35,11 @@ class Described(NamedTuple):
     meaning: str
 
 
-def described(item: Field[Any], spec: Spec) -> Described:
+def described(item: Field[Any], spec: Spec) -> FieldDescription:
     """A field in words."""
     bound = ", ".join(spec.choices) or spec.bound
     meaning = f"{spec.doc} (instead of `{spec.instead_of}`)" if spec.instead_of else spec.doc
-    return Described(item.name, _sort(spec), _unit(spec), _default(item, spec), bound, meaning)
+    return FieldDescription(item.name, _sort(spec), _unit(spec), _default(item, spec), bound, meaning)
 
 
 def _sort(spec: Spec) -> str:
@@ -80,7 +81,7 @@ def parameters(cls: type) -> Iterator[tuple[str, str]]:
         yield told.name, f"({sort} {default}): {told.meaning}"
 
 
-def _bounded(told: Described) -> str:
+def _bounded(told: FieldDescription) -> str:
     return " ".join(filter(None, (f"[{told.unit}]" if told.unit else "", told.bound)))
 
 
@@ -125,14 +126,7 @@ class _Docstring:
         return docstring(cls)
 
 
-class _Signature:
-    """The signature of a class, made when it is asked for."""
-
-    def __get__(self, thing: object, cls: type) -> Signature:
-        return signature(cls)
-
-
 def document(cls: Any) -> None:
     """Let help() and editors show all parameters of a declaration."""
     cls.__doc__ = _Docstring(cls.__doc__ or "")
-    cls.__signature__ = _Signature()
+    cls.__signature__ = LazySignature(signature)

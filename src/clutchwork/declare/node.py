@@ -8,7 +8,7 @@ from functools import cached_property
 from typing import TYPE_CHECKING, Any, ClassVar, NamedTuple, Protocol, TypeAlias, cast
 
 from clutchwork.base.classes import PLAIN, dataclass
-from clutchwork.declare import given
+from clutchwork.declare import to_si
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Mapping, Sequence
@@ -20,7 +20,7 @@ if TYPE_CHECKING:
 Found: TypeAlias = "list[tuple[str, str, str]]"
 
 
-class Measured(Protocol):
+class PintQuantity(Protocol):
     """A quantity of pint."""
 
     @property
@@ -62,10 +62,10 @@ class Node:
         """Values with units are put into SI."""
         values = vars(self)
         for name, unit in zip(PLACES, NODE_UNITS[self.domain], strict=True):
-            values[name] = given.Wanted(unit).number(values[name])
+            values[name] = to_si.TargetUnit(unit).number(values[name])
 
     def __repr__(self) -> str:
-        from clutchwork.declare.described import node
+        from clutchwork.declare.reprs import node
 
         return node(self)
 
@@ -100,12 +100,12 @@ class ThermalNode:
     def _accept(self) -> None:
         """Values with units are put into SI."""
         values = vars(self)
-        values["capacity"] = given.Wanted("J/K").number(values["capacity"])
-        values["temperature"] = given.driving(given.Wanted("K").number(values["temperature"]), "K")
-        values["limit"] = given.Wanted("K").number(values["limit"])
+        values["capacity"] = to_si.TargetUnit("J/K").number(values["capacity"])
+        values["temperature"] = to_si.driving(to_si.TargetUnit("K").number(values["temperature"]), "K")
+        values["limit"] = to_si.TargetUnit("K").number(values["limit"])
 
     def __repr__(self) -> str:
-        from clutchwork.declare.described import thermal_node
+        from clutchwork.declare.reprs import thermal_node
 
         return thermal_node(self)
 
@@ -162,7 +162,7 @@ class ShiftTable(NamedTuple):
     ratios: Mapping[str, float | None]  # gear -> speed of the input over that of the output, None in neutral
 
 
-class Listed(type):
+class DeclarationType(type):
     """Class of declarations: dir() and help() list what their users need, and no hook that only the engine calls."""
 
     # help() asks a class for its docstring by way of its own class, whose docstring would hide that of the declaration
@@ -175,15 +175,15 @@ class Listed(type):
         return [name for name in [*shown, *(["part"] if made_of_parts else [])] if name[0] != "_"]
 
 
-class Declared(metaclass=Listed):
+class Declared(metaclass=DeclarationType):
     """Base of elements, laws and signals."""
 
     def _accept(self) -> None:
         """Values with units are put into SI."""
-        given.accept(self)
+        to_si.accept(self)
 
     def __repr__(self) -> str:
-        from clutchwork.declare.described import called
+        from clutchwork.declare.reprs import called
 
         return called(self)
 
@@ -203,7 +203,7 @@ class Element(Declared):
     name: str
 
     def __repr__(self) -> str:
-        from clutchwork.declare.described import element
+        from clutchwork.declare.reprs import element
 
         return element(self)
 
@@ -450,8 +450,8 @@ class Signal(Declared):
 
     def __setstate__(self, state: dict[str, Any]) -> None:
         vars(self).update(state)
-        if given.OPEN in state:
-            given.mark_open(self)
+        if to_si.OPEN in state:
+            to_si.mark_open(self)
 
     def segments(self) -> tuple[Segment, ...]:
         """Pieces in order of their start.
@@ -508,7 +508,7 @@ SignalLike: TypeAlias = "float | Signal | ThermalNode | Element | tuple[Element,
 # (x, y) pairs of a curve
 Points: TypeAlias = "Sequence[tuple[float, float]]"
 # what may be given for a number, and for pairs of them
-Number: TypeAlias = "float | str | Measured"
+Number: TypeAlias = "float | str | PintQuantity"
 PointsWithUnits: TypeAlias = "Sequence[tuple[Number, Number]]"
 # coefficients of friction: one, a table, or rows of one
 Coefficients: TypeAlias = "float | Points | Sequence[float] | Sequence[Sequence[float]]"

@@ -15,11 +15,11 @@ from clutchwork.base.classes import dataclass
 from clutchwork.base.errors import OptionError, UseError, advised, near
 from clutchwork.declare.calls import explain, explained_methods
 from clutchwork.declare.docs import document
-from clutchwork.declare.given import is_array
 from clutchwork.declare.layout import METHODS
 from clutchwork.declare.quantity import has_unit
 from clutchwork.declare.schema import Spec
 from clutchwork.declare.setting import Setting, setting
+from clutchwork.declare.to_si import is_array
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray

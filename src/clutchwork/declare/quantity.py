@@ -9,7 +9,7 @@ from collections.abc import Mapping
 from typing import Any
 
 from clutchwork.base.errors import ClutchworkError, advised, near
-from clutchwork.base.shown import shortened, shown
+from clutchwork.base.quote import quote, shortened
 from clutchwork.declare import pints, units
 from clutchwork.declare.unit_table import example_of
 from clutchwork.declare.unit_table import unit_table as unit_table
@@ -56,12 +56,12 @@ def in_si(
         unknown = [key for key in value if key not in ("value", "unit")]
         if unknown or "value" not in value:
             raise QuantityError(
-                "must be a number", shown(dict(value)), 'write a number, or {value = 1.0, unit = "..."}'
+                "must be a number", quote(dict(value)), 'write a number, or {value = 1.0, unit = "..."}'
             )
         if "unit" in value:
             factor, zero = scale_to_si(value["unit"], unit, others, dict(value), difference=difference)
         if isinstance(value["value"], Mapping):
-            raise QuantityError("holds a table", shown(value), 'write {value = 1.0, unit = "..."}')
+            raise QuantityError("holds a table", quote(value), 'write {value = 1.0, unit = "..."}')
         return in_si(value["value"], unit, others, factor, difference=difference, zero=zero)
     if isinstance(value, str):
         return _from_text(value, unit, others, difference)
@@ -76,10 +76,10 @@ def _from_text(value: str, unit: str, others: tuple[str, ...], difference: bool)
         remedy = f"write a number{within(unit)}, or a string such as {example_of(unit)!r}"
         if units.has_comma(value):
             remedy = f"write a decimal point: {value.replace(',', '.').strip()!r}"
-        raise QuantityError("is not a number", shown(value), remedy)
+        raise QuantityError("is not a number", quote(value), remedy)
     if not parts[1]:
         example = "" if unit == "1" else f" or add one, such as '{parts[0]:g} {unit}'"
-        raise QuantityError("has no unit", shown(value), f"remove the quotes{example}")
+        raise QuantityError("has no unit", quote(value), f"remove the quotes{example}")
     found = scale_to_si(parts[1], unit, others, value, difference=difference)
     return found.si(parts[0])
 
@@ -112,7 +112,7 @@ def scale_to_si(
     Parameters: others, further units that may be wanted; whole, the value as it was given; difference, whether numbers
     are differences, so that a unit with another zero is refused.
     """
-    value, wanted = shown(given if whole is None else whole), _wanted(unit, others)
+    value, wanted = quote(given if whole is None else whole), _wanted(unit, others)
     if not isinstance(given, str):
         raise QuantityError("must be a unit", value, f"write it as a string, such as {unit!r}")
     try:
@@ -122,7 +122,7 @@ def scale_to_si(
         if units.other_zero(word):
             raise _refused(value, word, wanted, difference and units.powers_of(unit) == KELVIN) from None
         meant = near(word, [*units.known(), "degC", "degF"])
-        raise QuantityError(f"has the unknown unit {shown(word)}{meant}", value, f"give it in {wanted}") from None
+        raise QuantityError(f"has the unknown unit {quote(word)}{meant}", value, f"give it in {wanted}") from None
     if found is None:
         example = "" if unit == "1" else f", such as {example_of(unit)!r}"
         raise QuantityError("has a unit that does not fit", value, f"give it in {wanted}{example}")

@@ -9,17 +9,17 @@ from typing import Any, NamedTuple
 
 from clutchwork.base.classes import dataclass
 from clutchwork.base.errors import near
-from clutchwork.base.shown import shown
-from clutchwork.declare.given import field_in_si
+from clutchwork.base.quote import quote
 from clutchwork.declare.quantity import QuantityError, has_unit, in_si
 from clutchwork.declare.schema import Spec
-from clutchwork.declare.speech import say
+from clutchwork.declare.to_si import field_in_si
+from clutchwork.declare.wording import say
 
 # beyond these the square or the reciprocal of a number leaves double precision
 LEAST, MOST = 1e-300, 1e300
 
 
-class Fault(NamedTuple):
+class Invalid(NamedTuple):
     """What is wrong with a value."""
 
     value: str  # "-1 s" as it was given
@@ -73,7 +73,7 @@ class Setting:
             return value
         return field_in_si(value, spec)
 
-    def fault(self, value: Any) -> Fault | None:
+    def fault(self, value: Any) -> Invalid | None:
         """What is wrong with a value; lists of numbers are looked at where they are used."""
         spec, value = self.spec, self.in_si(value)
         if spec.what == "numbers" or (value is None and spec.optional):
@@ -81,24 +81,24 @@ class Setting:
         if spec.choices:
             if isinstance(value, str) and value in spec.choices:
                 return None
-            return Fault(shown(value), f"must be one of {', '.join(spec.choices)}{near(value, spec.choices)}", "")
+            return Invalid(quote(value), f"must be one of {', '.join(spec.choices)}{near(value, spec.choices)}", "")
         if spec.flag:
             if isinstance(value, bool):
                 return None
-            return Fault(shown(value), say("must be true or false", "must be True or False"), f"it says {spec.doc}")
+            return Invalid(quote(value), say("must be true or false", "must be True or False"), f"it says {spec.doc}")
         if has_unit(value):
             return self.unit_fault(value)
         message = self._wrong(_as_number(value))
-        return Fault(self._shown(value), message, f"it is the {spec.doc}") if message else None
+        return Invalid(self._shown(value), message, f"it is the {spec.doc}") if message else None
 
-    def unit_fault(self, value: Any) -> Fault:
+    def unit_fault(self, value: Any) -> Invalid:
         """Why a string or a quantity of pint is not a number of this option."""
         try:
             in_si(value, self.spec.unit)
         except QuantityError as bad:
-            return Fault(bad.value, bad.message, bad.remedy)
-        return Fault(
-            shown(value), f"must be a {'whole ' if self.spec.whole else ''}number", f"it is the {self.spec.doc}"
+            return Invalid(bad.value, bad.message, bad.remedy)
+        return Invalid(
+            quote(value), f"must be a {'whole ' if self.spec.whole else ''}number", f"it is the {self.spec.doc}"
         )
 
     def _wrong(self, number: float | None) -> str:
@@ -121,7 +121,7 @@ class Setting:
 
     def _shown(self, value: Any) -> str:
         number = _as_number(value)
-        return shown(value) if number is None or self.spec.whole else f"{number:g}{self.unit}"
+        return quote(value) if number is None or self.spec.whole else f"{number:g}{self.unit}"
 
 
 def setting(

@@ -5,7 +5,7 @@ from __future__ import annotations
 from functools import cache
 from typing import NamedTuple
 
-from clutchwork.declare.unit_words import OTHER_ZERO, QUANTITIES, TABLE, Quantity
+from clutchwork.declare.unit_words import OTHER_ZERO, QUANTITIES, TABLE, UnitGroup
 from clutchwork.declare.units import Scale, powers_of, scale
 
 # second words of units that are listed already
@@ -51,7 +51,7 @@ def fitting(unit: str) -> list[str]:
     return exact or [row.name for row in unit_table() if powers_of(row.si) == powers_of(unit)]
 
 
-def _measures(name: str, quantity: Quantity) -> bool:
+def _measures(name: str, quantity: UnitGroup) -> bool:
     """Whether a word is one of a quantity; that of torque is one of work by its powers alone."""
     turns = ("1/min",)
     if name in turns:

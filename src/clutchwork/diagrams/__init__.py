@@ -1,1 +1,1 @@
-"""Pictures of gearboxes as SVG: stick diagram, lever diagram, speed plan; and the command `clutchwork gearbox`."""
+"""Pictures of gearboxes as SVG: stick diagram, lever diagram, speed plan."""

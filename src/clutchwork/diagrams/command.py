@@ -120,7 +120,7 @@ def _paged(box: Gearbox, asked: argparse.Namespace) -> int:
 
 
 def _listed(asked: argparse.Namespace) -> int:
-    from clutchwork.base.text import columns
+    from clutchwork.base.plural import columns
     from clutchwork.gearbox.gearbox import catalogue
 
     boxes = catalogue()

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 from clutchwork.base.errors import UseError, near
 from clutchwork.base.paths import path_fault
-from clutchwork.base.shown import listed, shown
+from clutchwork.base.quote import listed, quote
 from clutchwork.declare.calls import explained
 from clutchwork.diagrams.kinds import KINDS
 from clutchwork.diagrams.picture import Diagram
@@ -65,13 +65,13 @@ def diagram(
 
 def _problems(box: Any, kind: Any, path: Any, merged: Any) -> Any:
     if not isinstance(box, Gearbox):
-        yield f"{shown(box)} is not a gearbox: give cw.Gearbox.load(...), or a name of the catalogue"
+        yield f"{quote(box)} is not a gearbox: give cw.Gearbox.load(...), or a name of the catalogue"
     if kind not in KINDS:
-        yield f"kind is {shown(kind)}{near(str(kind), KINDS, f'choose from {listed(KINDS)}')}"
+        yield f"kind is {quote(kind)}{near(str(kind), KINDS, f'choose from {listed(KINDS)}')}"
     if path is not None and (fault := path_fault(path, "gearbox.svg")):
         yield fault
     if not isinstance(merged, bool):
-        yield f"merged is {shown(merged)}: give True or False"
+        yield f"merged is {quote(merged)}: give True or False"
 
 
 def _has_lever(one: GearSet) -> bool:

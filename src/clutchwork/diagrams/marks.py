@@ -6,7 +6,7 @@ from collections.abc import Sequence
 from typing import NamedTuple
 
 from clutchwork.diagrams.letters import width_of
-from clutchwork.schematic.pen import Box
+from clutchwork.schematic.pen import Rect
 
 Point = tuple[float, float]
 INK, GREY, FAINT, PAPER = "#1A1A1A", "#6A6A6A", "#B8B8B8", "#FFFFFF"
@@ -18,7 +18,7 @@ TITLE, NAME, SMALL = 14.0, 10.5, 9.0  # px, sizes of text
 _LOW = frozenset("gjpqyQ,;()[]{}|/_@$")
 
 
-class Line(NamedTuple):
+class Polyline(NamedTuple):
     """A line through points; closed and filled, an area."""
 
     points: tuple[Point, ...]
@@ -30,11 +30,11 @@ class Line(NamedTuple):
     what: str = ""  # shown where a pointer rests on it
 
     @property
-    def box(self) -> Box:
+    def box(self) -> Rect:
         """What it covers."""
         xs, ys = [x for x, _ in self.points], [y for _, y in self.points]
         half = 0.5 * self.width
-        return Box(min(xs) - half, min(ys) - half, max(xs) + half, max(ys) + half)
+        return Rect(min(xs) - half, min(ys) - half, max(xs) + half, max(ys) + half)
 
 
 class Disc(NamedTuple):
@@ -48,10 +48,10 @@ class Disc(NamedTuple):
     width: float = 0.0
 
     @property
-    def box(self) -> Box:
+    def box(self) -> Rect:
         """What it covers."""
         reach = self.radius + 0.5 * self.width
-        return Box(self.x - reach, self.y - reach, self.x + reach, self.y + reach)
+        return Rect(self.x - reach, self.y - reach, self.x + reach, self.y + reach)
 
 
 class Label(NamedTuple):
@@ -66,15 +66,15 @@ class Label(NamedTuple):
     anchor: str = "middle"
 
     @property
-    def box(self) -> Box:
+    def box(self) -> Rect:
         """What it covers."""
         wide = width_of(self.text, self.size, bold=self.bold)
         left = self.x - {"start": 0.0, "middle": 0.5, "end": 1.0}[self.anchor] * wide
         below = 0.22 if _LOW.intersection(self.text) else 0.02
-        return Box(left, self.y - 0.76 * self.size, left + wide, self.y + below * self.size)
+        return Rect(left, self.y - 0.76 * self.size, left + wide, self.y + below * self.size)
 
 
-Mark = Line | Disc | Label
+Mark = Polyline | Disc | Label
 
 
 class Pen:
@@ -85,13 +85,13 @@ class Pen:
 
     def line(self, *points: Point, colour: str = INK, width: float = 1.4, dash: str = "", what: str = "") -> None:
         """A line through points."""
-        self.marks.append(Line(points, colour, width, dash=dash, what=what))
+        self.marks.append(Polyline(points, colour, width, dash=dash, what=what))
 
     def area(self, *points: Point, fill: str, colour: str = "", width: float = 0.0, what: str = "") -> None:
         """A filled area, with an outline where it has a width."""
-        self.marks.append(Line(points, colour or fill, width, fill, closed=True, what=what))
+        self.marks.append(Polyline(points, colour or fill, width, fill, closed=True, what=what))
 
-    def rectangle(self, box: Box, fill: str, colour: str = "", width: float = 0.0) -> None:
+    def rectangle(self, box: Rect, fill: str, colour: str = "", width: float = 0.0) -> None:
         """A filled rectangle."""
         corners = ((box.left, box.low), (box.right, box.low), (box.right, box.high), (box.left, box.high))
         self.area(*corners, fill=fill, colour=colour, width=width)
@@ -116,10 +116,10 @@ class Pen:
             self.marks.append(Label(x, y, text, size, colour, bold, anchor))
 
 
-def around(marks: Sequence[Mark]) -> Box:
+def around(marks: Sequence[Mark]) -> Rect:
     """What marks cover together."""
     boxes = [mark.box for mark in marks]
-    return Box(
+    return Rect(
         min(box.left for box in boxes), min(box.low for box in boxes),
         max(box.right for box in boxes), max(box.high for box in boxes),
     )  # fmt: skip

@@ -9,7 +9,7 @@ from pathlib import Path
 from clutchwork.base.paths import fitting
 from clutchwork.base.writing import put
 from clutchwork.diagrams.letters import FONT
-from clutchwork.diagrams.marks import PAPER, Disc, Label, Line, Mark, around
+from clutchwork.diagrams.marks import PAPER, Disc, Label, Mark, Polyline, around
 
 MARGIN = 12.0
 
@@ -65,7 +65,7 @@ def _mark(mark: Mark) -> str:
     return _line(mark)
 
 
-def _line(mark: Line) -> str:
+def _line(mark: Polyline) -> str:
     way = " L".join(f"{number(x)} {number(y)}" for x, y in mark.points)
     outline = f' stroke="{mark.colour}" stroke-width="{number(mark.width)}"' if mark.width else ""
     dash = f' stroke-dasharray="{mark.dash}"' if mark.dash else ""

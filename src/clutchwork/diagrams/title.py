@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 from clutchwork.diagrams.letters import width_of
 from clutchwork.diagrams.marks import GREY, INK, NAME, TITLE, Pen
-from clutchwork.schematic.pen import Box
+from clutchwork.schematic.pen import Rect
 
 if TYPE_CHECKING:
     from clutchwork.gearbox.definition import Definition
@@ -20,7 +20,7 @@ def gear_text(now: GearState) -> str:
     return f"{name}, ratio {now.ratio:.3f}".replace("-", "\N{MINUS SIGN}")
 
 
-def draw_title(pen: Pen, box: Box, what: Definition, now: GearState | None) -> None:
+def draw_title(pen: Pen, box: Rect, what: Definition, now: GearState | None) -> None:
     """Name of the gearbox and gear above what is drawn."""
     high = box.low - 14.0
     if now is not None:
@@ -30,7 +30,7 @@ def draw_title(pen: Pen, box: Box, what: Definition, now: GearState | None) -> N
     pen.label(box.left, high, what.title or what.name, TITLE, INK, bold=True, anchor="start")
 
 
-def draw_legend(pen: Pen, box: Box, entries: Sequence[tuple[str, str]]) -> None:
+def draw_legend(pen: Pen, box: Rect, entries: Sequence[tuple[str, str]]) -> None:
     """Colours and what they mean, below what is drawn, in as many rows as it takes."""
     x, y = box.left, box.high + 20.0
     for colour, text in entries:

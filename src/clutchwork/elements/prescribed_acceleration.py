@@ -5,12 +5,12 @@ from __future__ import annotations
 from typing import ClassVar
 
 from clutchwork.declare import Role, Signal, SignalLike, component, signal
-from clutchwork.elements.bases.motion import Motion, MotionError, as_signal
+from clutchwork.elements.bases.motion import MotionError, PrescribedMotion, as_signal
 from clutchwork.signals.bases.motions import SignalError, integral
 
 
 @component(Role.MOTION)
-class PrescribedAcceleration(Motion):
+class PrescribedAcceleration(PrescribedMotion):
     """Source that accelerates a shaft or a mass exactly as wanted, whatever torque that takes.
 
     Use it for a measured acceleration, a shaken base, a braking of given deceleration. It starts with the speed of the

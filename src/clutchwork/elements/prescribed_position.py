@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 from clutchwork.declare import Role, Signal, SignalLike, component, option, signal
-from clutchwork.elements.bases.motion import Motion, MotionError, as_signal
+from clutchwork.elements.bases.motion import MotionError, PrescribedMotion, as_signal
 from clutchwork.signals.bases.motions import SignalError, at_start, bessel, derivative
 
 
 @component(Role.MOTION)
-class PrescribedPosition(Motion):
+class PrescribedPosition(PrescribedMotion):
     """Source that moves a shaft or a mass exactly along the wanted position, whatever torque that takes.
 
     Use it for an actuator that follows a stroke, a steered angle, a measured position. Its speed is the exact

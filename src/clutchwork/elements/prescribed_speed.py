@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 from clutchwork.declare import Role, Signal, SignalLike, component, option, signal
-from clutchwork.elements.bases.motion import Motion, MotionError, as_signal
+from clutchwork.elements.bases.motion import MotionError, PrescribedMotion, as_signal
 from clutchwork.signals.bases.waveform import low_pass
 
 
 @component(Role.MOTION)
-class PrescribedSpeed(Motion):
+class PrescribedSpeed(PrescribedMotion):
     """Source that gives a shaft exactly the wanted speed, whatever torque that takes.
 
     Use it for a speed-controlled test bench or a shaft whose speed was measured; its torque is part of the result.

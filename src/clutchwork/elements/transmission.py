@@ -10,7 +10,7 @@ from typing import Any, ClassVar
 
 from clutchwork.base.errors import near
 from clutchwork.base.frozen import frozen
-from clutchwork.base.shown import listed, shown
+from clutchwork.base.quote import listed, quote
 from clutchwork.declare import (
     HOUSING,
     Component,
@@ -34,7 +34,7 @@ from clutchwork.elements.bases.shift_elements import DRAG, KINDS, Ends, entry, l
 from clutchwork.elements.gear import Gear
 from clutchwork.gearbox.definition import Definition
 from clutchwork.gearbox.motion import speeds
-from clutchwork.gearbox.read import Read, read
+from clutchwork.gearbox.read import ReadGearbox, read
 from clutchwork.gearbox.reader import plain
 
 EXAMPLE: Any = {
@@ -96,7 +96,7 @@ class Transmission(Heating):
                 vars(self)[field] = frozen({**table, name: own | {k: v for k, v in table[name].items() if k == "type"}})
 
     @cached_property
-    def _read(self) -> Read:
+    def _read(self) -> ReadGearbox:
         return read(self.gearbox)
 
     @cached_property
@@ -128,13 +128,13 @@ class Transmission(Heating):
         known = {"inertias": ("member", members), "speeds": ("member", members), "efficiencies": ("set", sets)}
         known |= {"shift": ("shift element", names), "drag": ("shift element", names)}
         found = [
-            (f"{quantity}.{name}", f"is not a {what} of {shown(box.name)}{near(name, of)}", f"it has {listed(of)}")
+            (f"{quantity}.{name}", f"is not a {what} of {quote(box.name)}{near(name, of)}", f"it has {listed(of)}")
             for quantity, (what, of) in known.items()
             for name in getattr(self, quantity) or {}
             if name not in of
         ]
         if self.gear is not None and self.gear not in box.gears:
-            message = f"is not a gear of {shown(box.name)}{near(self.gear, box.gears)}"
+            message = f"is not a gear of {quote(box.name)}{near(self.gear, box.gears)}"
             found.append(("gear", message, f"it has {listed(box.gears)}"))
         return found
 

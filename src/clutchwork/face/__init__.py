@@ -1,1 +1,1 @@
-"""What users hold in their hands."""
+"""The public face: Driveline, and the names of the package."""

@@ -6,7 +6,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from clutchwork.base.errors import UseError
-from clutchwork.base.shown import shown
+from clutchwork.base.quote import quote
 from clutchwork.declare.calls import explained
 
 if TYPE_CHECKING:
@@ -45,5 +45,5 @@ def draw(
     source = getattr(thing, "source", None)
     if source is None:
         known = "give a Driveline, a System that was made of one, or a Trajectory"
-        raise UseError("cw.draw", [f"{shown(thing)} holds no driveline: {known}"])
+        raise UseError("cw.draw", [f"{quote(thing)} holds no driveline: {known}"])
     return drawn(source, path, run=run, at=at, values=values, power=power, width=width)

@@ -8,11 +8,11 @@ from typing import TYPE_CHECKING, Any, TypeVar, Unpack
 
 from clutchwork.base.errors import ModelError, Problem, UseError, warn
 from clutchwork.base.paths import path_of
-from clutchwork.base.shown import shown
-from clutchwork.base.text import counted
+from clutchwork.base.plural import counted
+from clutchwork.base.quote import quote
 from clutchwork.declare.calls import explain, explained, explained_methods
 from clutchwork.declare.node import HOUSING, Component, Domain, Element, Node, Signal, ThermalNode
-from clutchwork.declare.speech import words_of_files
+from clutchwork.declare.wording import words_of_files
 from clutchwork.model.model import Model
 
 if TYPE_CHECKING:
@@ -45,7 +45,7 @@ class Driveline:
     def __repr__(self) -> str:
         """Its name and what it has."""
         has = {"shafts and masses": self.nodes, "thermal nodes": self.thermal_nodes, "elements": self.elements}
-        return f"<Driveline {shown(self.name)}: {', '.join(counted(len(all_), of) for of, all_ in has.items())}>"
+        return f"<Driveline {quote(self.name)}: {', '.join(counted(len(all_), of) for of, all_ in has.items())}>"
 
     @property
     def name(self) -> str:
@@ -126,7 +126,7 @@ class Driveline:
     def add_node(self, node: Node) -> Node:
         """Add a shaft or a mass that was made elsewhere."""
         if not isinstance(node, Node):
-            raise UseError("d.add_node", [f"{shown(node)} is not a shaft or mass; add a cw.Node, or call d.shaft(...)"])
+            raise UseError("d.add_node", [f"{quote(node)} is not a shaft or mass; add a cw.Node, or call d.shaft(...)"])
         self._model.nodes.append(node)
         return node
 
@@ -152,7 +152,7 @@ class Driveline:
     def add_thermal(self, node: ThermalNode) -> ThermalNode:
         """Add a thermal mass or an ambient that was made elsewhere."""
         if not isinstance(node, ThermalNode):
-            raise UseError("d.add_thermal", [f"{shown(node)} is not a thermal node; add a cw.ThermalNode"])
+            raise UseError("d.add_thermal", [f"{quote(node)} is not a thermal node; add a cw.ThermalNode"])
         self._model.thermal.append(node)
         return node
 
@@ -160,7 +160,7 @@ class Driveline:
     def add(self, element: E) -> E:
         """Add an element and return it; UseError, a TypeError, for anything else."""
         if not isinstance(element, Component):
-            raise UseError("d.add", [f"{shown(element)} is not an element; add one such as cw.Clutch(...)"])
+            raise UseError("d.add", [f"{quote(element)} is not an element; add one such as cw.Clutch(...)"])
         self._model.elements.append(element)
         return element
 

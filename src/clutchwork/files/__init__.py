@@ -1,1 +1,1 @@
-"""Model files: read, written, with the line of every mistake."""
+"""Model files: reading, writing, the line of every mistake."""

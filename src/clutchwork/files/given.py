@@ -7,13 +7,13 @@ from dataclasses import fields
 from typing import Any
 
 from clutchwork.base.errors import ModelError, Problem
-from clutchwork.base.shown import shown
+from clutchwork.base.quote import quote
 from clutchwork.base.toml_text import parsed
-from clutchwork.declare.given import settled
 from clutchwork.declare.node import Node, ThermalNode
 from clutchwork.declare.schema import Spec, specs
+from clutchwork.declare.to_si import settled
 from clutchwork.files.references import References
-from clutchwork.files.values import Values
+from clutchwork.files.values import ValueReader
 from clutchwork.model.changes import PLACES, Target, changed_model, targets_of
 from clutchwork.model.fields import BROKEN
 from clutchwork.model.findings import findings
@@ -45,7 +45,7 @@ def given_values(model: Model, texts: Sequence[str], folder: str = "") -> dict[s
     return values
 
 
-class _Given(Values):
+class _Given(ValueReader):
     """Reads single values."""
 
     def read(self, name: str, aim: Target, value: Any) -> Any:
@@ -77,7 +77,7 @@ def _pairs(texts: Sequence[str]) -> tuple[dict[str, str], list[Problem]]:
     for text in texts:
         name, sign, value = (part.strip() for part in text.partition("="))
         if not (name and sign and value):
-            problems.append(Problem(shown(text), "", "is not a name and a value", remedy=FORM))
+            problems.append(Problem(quote(text), "", "is not a name and a value", remedy=FORM))
         elif name in found:
             problems.append(Problem(name, "", "is given twice", remedy="give it once"))
         else:

@@ -14,7 +14,7 @@ _KEY = re.compile(r'\s*"?([A-Za-z_][\w-]*)"?\s*[=.]')
 _PATH = re.compile(r'(\w+)(?: number (\d+)| "(.*?)"(?= \(| and |$))?', re.DOTALL)
 
 
-class Lines:
+class LineNumbers:
     """Where the tables of a file stand; nothing is known of JSON and of tables in one line."""
 
     def __init__(self, text: str, suffix: str) -> None:

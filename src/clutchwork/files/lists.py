@@ -5,10 +5,10 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import Any
 
-from clutchwork.base.shown import shown
-from clutchwork.declare.given import Wanted, numbers_in_si, points_in_si
+from clutchwork.base.quote import quote
 from clutchwork.declare.quantity import PLAIN, QuantityError, in_si, scale_to_si
 from clutchwork.declare.schema import Spec
+from clutchwork.declare.to_si import TargetUnit, numbers_in_si, points_in_si
 from clutchwork.model.numbers import At
 
 
@@ -22,11 +22,11 @@ def curve_in_si(value: Any, spec: Spec, at: At) -> Any:
         unknown = [key for key in value if key not in ("points", "unit_x", "unit")]
         if unknown or not isinstance(value.get("points"), list | tuple):
             remedy = "write {points = [[x, y], ...], unit_x, unit}"
-            raise QuantityError("must be a list of points", shown(dict(value)), remedy)
+            raise QuantityError("must be a list of points", quote(dict(value)), remedy)
         x = scale_to_si(value["unit_x"], spec.unit_x, spec.units_x) if "unit_x" in value else x
         y = scale_to_si(value["unit"], at.unit, others) if "unit" in value else y
         value = value["points"]
-    return points_in_si(value, Wanted(spec.unit_x, spec.units_x, scale=x), Wanted(at.unit, others, scale=y))
+    return points_in_si(value, TargetUnit(spec.unit_x, spec.units_x, scale=x), TargetUnit(at.unit, others, scale=y))
 
 
 def list_in_si(value: Any, spec: Spec, at: At) -> Any:
@@ -35,7 +35,7 @@ def list_in_si(value: Any, spec: Spec, at: At) -> Any:
     if isinstance(value, Mapping):
         unknown = [key for key in value if key not in ("values", "unit")]
         if unknown or "values" not in value:
-            raise QuantityError("must be a list of numbers", shown(dict(value)), "write {values = [x, y, ...], unit}")
+            raise QuantityError("must be a list of numbers", quote(dict(value)), "write {values = [x, y, ...], unit}")
         scale = scale_to_si(value["unit"], at.unit, spec.units) if "unit" in value else scale
         value = value["values"]
-    return numbers_in_si(value, Wanted(at.unit, spec.units, scale=scale))
+    return numbers_in_si(value, TargetUnit(at.unit, spec.units, scale=scale))

@@ -37,14 +37,14 @@ from typing import Any
 
 from clutchwork.base.errors import ModelError, ModelFileError, Problem, nearest
 from clutchwork.base.paths import fitting
+from clutchwork.base.quote import listed, quote, shortened
 from clutchwork.base.regular import read_regular, reason
-from clutchwork.base.shown import listed, shortened, shown
 from clutchwork.base.toml_text import parsed
 from clutchwork.base.writing import put
 from clutchwork.declare.node import Domain
-from clutchwork.declare.speech import words_of_files
-from clutchwork.files.lines import Lines
-from clutchwork.files.reader import FORMAT, Reader
+from clutchwork.declare.wording import words_of_files
+from clutchwork.files.lines import LineNumbers
+from clutchwork.files.reader import FORMAT, ModelReader
 from clutchwork.files.writer import Writer, toml
 from clutchwork.model.findings import findings
 from clutchwork.model.model import Model
@@ -76,7 +76,7 @@ def load(path: str | Path) -> Model:
 def _elsewhere(path: Path) -> str:
     """Where a file that is missing may be."""
     if not path.parent.is_dir():
-        return f"check the path: there is no folder {shown(str(path.parent))}"
+        return f"check the path: there is no folder {quote(str(path.parent))}"
     files = [other for other in sorted(path.parent.iterdir()) if other.name not in NO_MODELS]
     others = {other.stem: other.name for other in files if other.suffix.lower() in ENDINGS}
     found = nearest(path.stem, others)
@@ -89,11 +89,11 @@ def _elsewhere(path: Path) -> str:
 
 def _from_text(path: Path, text: str) -> Model:
     if path.suffix.lower() not in ENDINGS:
-        problem = Problem("file", "", "must end in .toml or .json", shown(path.name), "rename the file")
+        problem = Problem("file", "", "must end in .toml or .json", quote(path.name), "rename the file")
         raise ModelError([problem], str(path))
     with tolerable(str(path)):
         data = _parsed(path, text)
-    return from_dict(data, path.parent, str(path), Lines(text, path.suffix.lower()))
+    return from_dict(data, path.parent, str(path), LineNumbers(text, path.suffix.lower()))
 
 
 def _parsed(path: Path, text: str) -> Any:
@@ -120,7 +120,7 @@ def _once(pairs: list[tuple[str, Any]]) -> dict[str, Any]:
     made: dict[str, Any] = {}
     for key, value in pairs:
         if key in made:
-            raise ValueError(f"key {shown(key)} appears twice in one object")
+            raise ValueError(f"key {quote(key)} appears twice in one object")
         made[key] = value
     return made
 
@@ -129,9 +129,9 @@ def _no_constant(name: str) -> float:
     raise ValueError(f"{name} is not allowed in a model file")
 
 
-def from_dict(data: Any, folder: str | Path = "", source: str = "", lines: Lines | None = None) -> Model:
+def from_dict(data: Any, folder: str | Path = "", source: str = "", lines: LineNumbers | None = None) -> Model:
     """A model from the content of a model file; CSV paths are relative to the folder."""
-    reader = Reader(str(folder))
+    reader = ModelReader(str(folder))
     with tolerable(source), words_of_files(), one_reading():
         model = reader.model(data)
         problems = reader.problems + findings(model, reader.incomplete).problems
@@ -153,7 +153,7 @@ def save(model: Model, path: str | Path) -> None:
     elif path.suffix.lower() == ".toml":
         text = toml(data)
     else:
-        problem = Problem("file", "", "must end in .toml or .json", shown(path.name), "rename the file")
+        problem = Problem("file", "", "must end in .toml or .json", quote(path.name), "rename the file")
         raise ModelError([problem], str(path))
     put(path, text)
 

@@ -7,12 +7,12 @@ from dataclasses import MISSING
 from typing import Any
 
 from clutchwork.base.errors import near
-from clutchwork.base.shown import listed, shown
+from clutchwork.base.quote import listed, quote
 from clutchwork.declare.node import Component, Domain, Node, ThermalNode
 from clutchwork.declare.options import SIMULATION
-from clutchwork.declare.speech import element_path
+from clutchwork.declare.wording import element_path
 from clutchwork.files.references import References
-from clutchwork.files.values import Values, element_kinds
+from clutchwork.files.values import ValueReader, element_kinds
 from clutchwork.model.fields import BROKEN
 from clutchwork.model.model import Model
 from clutchwork.model.numbers import At
@@ -23,7 +23,7 @@ FORMAT = 1
 TOP = ("format", "name", "description", "shaft", "mass", "thermal", "ambient", "element", "simulation")
 
 
-class Reader(Values):
+class ModelReader(ValueReader):
     """Turns plain data into a model and collects what is wrong with it."""
 
     def __init__(self, folder: str) -> None:
@@ -39,7 +39,7 @@ class Reader(Values):
         self.strays = _named_in({key: value for key, value in data.items() if key not in TOP})
         if data.get("format", FORMAT) != FORMAT:
             remedy = f"this version reads format {FORMAT}"
-            self._report(At("file", "format"), "is an unknown format", shown(data["format"]), remedy)
+            self._report(At("file", "format"), "is an unknown format", quote(data["format"]), remedy)
         model = Model(self._text(data, "name", "file", "driveline"))
         for kind, domain in (("shaft", Domain.ROTATION), ("mass", Domain.TRANSLATION)):
             for place, entry in self._entries(data, kind):
@@ -63,7 +63,7 @@ class Reader(Values):
         if isinstance(value, str) and value:
             return value
         message = "must be a string" if key in data else "is missing"
-        self._report(At(path, key), message, shown(value) if key in data else "", f"give a {key}")
+        self._report(At(path, key), message, quote(value) if key in data else "", f"give a {key}")
         return default
 
     def _node(self, model: Model, entry: Mapping[str, Any], domain: Domain, kind: str, place: int) -> None:
@@ -104,7 +104,7 @@ class Reader(Values):
         before = len(self.problems)
         if kind and kind not in known:
             remedy = f"known types: {listed(known)}"
-            self._report(At(path, "type"), "is an unknown type" + near(kind, known), shown(kind), remedy)
+            self._report(At(path, "type"), "is an unknown type" + near(kind, known), quote(kind), remedy)
         elif kind:
             values = self._values(known[kind], entry, At(element_path(name, known[kind]), ""), ("name", "type"))
             if name and len(self.problems) == before:
@@ -116,7 +116,7 @@ class Reader(Values):
     def _simulation(self, data: Any) -> dict[str, Any]:
         at = At("simulation", "")
         if not isinstance(data, Mapping):
-            return self._report(at, "must be a table", shown(data), "write [simulation] above its keys") and {}
+            return self._report(at, "must be a table", quote(data), "write [simulation] above its keys") and {}
         made = {}
         for key, value in data.items():
             row = SIMULATION.get(key)

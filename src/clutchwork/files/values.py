@@ -9,11 +9,11 @@ from pathlib import Path
 from typing import Any, TypeVar
 
 from clutchwork.base.errors import Problem, near
-from clutchwork.base.shown import listed, shown
-from clutchwork.declare.given import settled
+from clutchwork.base.quote import listed, quote
 from clutchwork.declare.node import HOUSING, Domain, Node, ThermalNode
 from clutchwork.declare.quantity import PLAIN, QuantityError, in_si, scale_to_si
 from clutchwork.declare.schema import REGISTRY, Role, Spec, inputs, specs
+from clutchwork.declare.to_si import settled
 from clutchwork.files.lists import curve_in_si, list_in_si
 from clutchwork.files.references import References, is_named, referred
 from clutchwork.model.components import type_problem
@@ -46,7 +46,7 @@ def is_path(value: Any) -> bool:
     return isinstance(value, str) and value.lower().endswith((".toml", ".json"))
 
 
-class Values:
+class ValueReader:
     """Turns the values of one file into those of fields; every mistake is collected."""
 
     def __init__(self, folder: str, elements: References) -> None:
@@ -207,11 +207,11 @@ class Values:
         what = PORTS[spec.domain if moving else spec.domain or "rotation"] if spec.what == "port" else "thermal node"
         if isinstance(value, str) and value in self.strays:
             remedy = f"it stands in [[{self.strays[value]}]]: write [[{what.partition(' ')[0]}]]"
-            return self._report(at, f"is not a {what} of this model", shown(value), remedy)
+            return self._report(at, f"is not a {what} of this model", quote(value), remedy)
         fits = [name for name in known if _is_of(known[name], spec)]
         many = {"mass": "masses", "shaft or mass": "shafts and masses"}.get(what, f"{what}s")
         remedy = f"known {many}: {listed(fits)}" if fits else "add one: [[thermal]] or [[ambient]]"
-        return self._report(at, f"is not a {what} of this model" + near(value, fits), shown(value), remedy)
+        return self._report(at, f"is not a {what} of this model" + near(value, fits), quote(value), remedy)
 
     def _other(self, value: Any, at: At) -> Any:
         """An input that a thermal node, an element or a shaft gives."""
@@ -220,13 +220,13 @@ class Values:
         found = found or self.elements.get(name) or self.nodes.get(name)
         if name in self.elements and found is None:
             # its own mistakes are reported where it stands
-            return BROKEN if self.elements.broken(name) else self._report(at, "refers back to itself", shown(name))
+            return BROKEN if self.elements.broken(name) else self._report(at, "refers back to itself", quote(name))
         if found is None and self.elements.unknown_part(name):
             return BROKEN
         if found is None:
             known = [*self.thermal, *self.elements, *self.nodes]
             message = "is not a thermal node, element or shaft of this model" + near(name, known)
-            return self._report(at, message, shown(name), f"known names: {listed(known)}")
+            return self._report(at, message, quote(name), f"known names: {listed(known)}")
         return found if isinstance(value, str) else referred(value, found)
 
     def _typed(self, value: Any, role: Role, at: At, taken: tuple[str, ...] = ("type",)) -> Any:
@@ -234,11 +234,11 @@ class Values:
         known = REGISTRY[role]
         if not isinstance(value, Mapping) or "type" not in value:
             remedy = f'write {{type = "...", ...}}; known types: {listed(known)}'
-            return self._report(at, f"must be a table with the type of a {role.value}", shown(value), remedy)
+            return self._report(at, f"must be a table with the type of a {role.value}", quote(value), remedy)
         kind = value["type"]
         if not isinstance(kind, str) or kind not in known:
             remedy = f"known types: {listed(known)}"
-            return self._report(at.inner("type"), "is an unknown type" + near(kind, known), shown(kind), remedy)
+            return self._report(at.inner("type"), "is an unknown type" + near(kind, known), quote(kind), remedy)
         before = len(self.problems)
         values = self._values(known[kind], value, at, taken)
         return self._made(known[kind](**values)) if len(self.problems) == before else BROKEN
@@ -261,10 +261,10 @@ class Values:
                 self._made(signal)
             if place.scale.zero:
                 remedy = "write the unit into the head of the column: temperature [degC]"
-                return self._report(at.inner("unit"), "has another zero than kelvin", shown(value["unit"]), remedy)
+                return self._report(at.inner("unit"), "has another zero than kelvin", quote(value["unit"]), remedy)
             if "unit" in value and place.scale != PLAIN and (unit := replace(signal, scale=1.0).unit()):
                 fault = f"cannot be given: the head of the column has the unit [{unit}]"
-                return self._report(at.inner("unit"), fault, shown(value["unit"]), "remove unit")
+                return self._report(at.inner("unit"), fault, quote(value["unit"]), "remove unit")
         return BROKEN if scale is BROKEN else signal
 
 

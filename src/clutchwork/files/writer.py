@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING, Any
 from clutchwork.base.errors import Problem
 from clutchwork.declare.node import HeatFlow, Rate, is_reference
 from clutchwork.declare.schema import Spec, specs
-from clutchwork.declare.speech import path_of
+from clutchwork.declare.wording import path_of
 from clutchwork.files.values import element_kinds, is_path
 from clutchwork.model.numbers import At
 from clutchwork.model.problems import NODE_FIELDS

@@ -1,4 +1,4 @@
-"""Parameters of a friction law from measured slip and torque, or numbers of a driveline from measured runs.
+"""Parameters of friction laws and of whole drivelines, identified from measurements.
 
     import clutchwork as cw
     from clutchwork.fit import fit_csv

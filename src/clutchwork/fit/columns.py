@@ -10,17 +10,17 @@ import numpy as np
 from numpy.typing import NDArray
 
 from clutchwork.base.errors import FileError, near
-from clutchwork.base.shown import listed, shown
+from clutchwork.base.quote import listed, quote
 from clutchwork.fit.failure import FitError, refuse
 from clutchwork.signals.bases.column_file import names_of
-from clutchwork.signals.bases.column_heads import Head, split
+from clutchwork.signals.bases.column_heads import ColumnHead, split
 from clutchwork.signals.bases.measured.formats import format_of
 from clutchwork.signals.column import Column
 
 Array = NDArray[np.float64]
 
 
-class Read(NamedTuple):
+class ReadColumn(NamedTuple):
     """What a column holds."""
 
     times: Array  # s
@@ -30,9 +30,9 @@ class Read(NamedTuple):
 
 def columns(
     path: str | Path, wanted: Mapping[str, str], time: str, group: str | None, window: Sequence[float] | None
-) -> dict[str, Read]:
+) -> dict[str, ReadColumn]:
     """Columns of a file by what they are wanted for; FitError names all that cannot be used."""
-    found, problems, span = dict[str, Read](), dict[str, FitError](), _span(window)
+    found, problems, span = dict[str, ReadColumn](), dict[str, FitError](), _span(window)
     if not wanted:
         problems["measured"] = FitError("measured", "is empty", "give at least one column")
     for name, head in wanted.items():
@@ -53,7 +53,7 @@ def _faults(path: str | Path, name: str, head: str, time: str, error: FileError)
     for quantity, message, remedy in error.problems:
         wanted = time if quantity == "time" else head
         hint = near(wanted, known) or near(split(wanted)[0], [split(one)[0] for one in known])
-        missing = known and message.endswith(f"has no column {shown(wanted)}")
+        missing = known and message.endswith(f"has no column {quote(wanted)}")
         told = f"the columns are {listed(known)}{hint}" if missing else remedy
         if quantity == "time":
             yield FitError("time", f"cannot be read: {message}", f"give time=...; {told}" if missing else told)
@@ -69,7 +69,7 @@ def _names(path: str | Path) -> list[str]:
         return []
 
 
-def _read(path: str | Path, wanted: str, time: str, group: str | None) -> Read:
+def _read(path: str | Path, wanted: str, time: str, group: str | None) -> ReadColumn:
     """A column in the unit that the file says, or that is wanted where the file says none."""
     name, unit = split(wanted)
     column = Column(str(path), wanted, time=time, group=group)
@@ -78,11 +78,11 @@ def _read(path: str | Path, wanted: str, time: str, group: str | None) -> Read:
         plain = Column(str(path), name, time=time, group=group)
         column = column if plain.problems() else plain
     points, own = np.array(column.points), column.unit()
-    scale = Head(wanted, own).scale()
-    if unit and own and Head(wanted, unit).scale() != scale:
-        raise FitError("column", f"{shown(name)} is in {own} in the file, not in {unit}", "leave out the unit")
+    scale = ColumnHead(wanted, own).scale()
+    if unit and own and ColumnHead(wanted, unit).scale() != scale:
+        raise FitError("column", f"{quote(name)} is in {own} in the file, not in {unit}", "leave out the unit")
     # what the unit is worth its signal decides: a temperature, or a difference of two
-    return Read(points[:, 0], (points[:, 1] - scale.zero) / scale.factor, own or unit)
+    return ReadColumn(points[:, 0], (points[:, 1] - scale.zero) / scale.factor, own or unit)
 
 
 def _span(window: Sequence[float] | None) -> tuple[float, float] | None:
@@ -93,11 +93,11 @@ def _span(window: Sequence[float] | None) -> tuple[float, float] | None:
     except (TypeError, ValueError):
         begin = end = 0.0
     if not begin < end:
-        raise FitError("window", f"is {shown(window)}", "give begin and end in [s], such as window=(12.5, 15.0)")
+        raise FitError("window", f"is {quote(window)}", "give begin and end in [s], such as window=(12.5, 15.0)")
     return begin, end
 
 
-def _cut(read: Read, span: tuple[float, float] | None) -> Read:
+def _cut(read: ReadColumn, span: tuple[float, float] | None) -> ReadColumn:
     """What is inside of a window, whose times count from its begin."""
     if span is None:
         return read
@@ -105,4 +105,4 @@ def _cut(read: Read, span: tuple[float, float] | None) -> Read:
     if not np.any(inside):
         told = f"has no sample from {span[0]:g} to {span[1]:g} s: times are {read.times[0]:g} to {read.times[-1]:g} s"
         raise FitError("column", told, "choose another window")
-    return Read(read.times[inside] - span[0], read.values[inside], read.unit)
+    return ReadColumn(read.times[inside] - span[0], read.values[inside], read.unit)

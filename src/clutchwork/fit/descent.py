@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from clutchwork.base.errors import ModelError
 from clutchwork.fit.driven import Driven
 from clutchwork.fit.failure import FitError, scipy
-from clutchwork.fit.losses import Loss
+from clutchwork.fit.losses import Penalty
 from clutchwork.fit.numbers import Numbers
 from clutchwork.fit.search import MOST_ROUNDS, SETTLED, STAY
 from clutchwork.fit.traces import Trace
@@ -31,7 +31,7 @@ SPREAD = 1.0
 SEED = 14
 
 
-class Ended(NamedTuple):
+class DescentResult(NamedTuple):
     """Where a search ended."""
 
     u: Array
@@ -42,8 +42,8 @@ class Ended(NamedTuple):
 class Descent:
     """What is minimised: residuals, each over its deviation or the size of its signal."""
 
-    def __init__(self, records: Sequence[Driven], numbers: Numbers, loss: Loss | None = None) -> None:
-        self.records, self.numbers, self.loss = records, numbers, loss or Loss()
+    def __init__(self, records: Sequence[Driven], numbers: Numbers, loss: Penalty | None = None) -> None:
+        self.records, self.numbers, self.loss = records, numbers, loss or Penalty()
         # residuals from where on they count less; None: all count in full
         self.within: Array | None = None
         self.lower, self.upper = numbers.ends()
@@ -146,13 +146,13 @@ class Descent:
 
     # ---------------------------------------------------------------------------------------------------------- search
 
-    def solve(self, starts: int) -> list[Ended]:
+    def solve(self, starts: int) -> list[DescentResult]:
         """Where the searches from several starts ended, the best one first."""
         made = [self._solved(u) for u in self._starts(starts)]
         ended = sorted((one for one in made if one is not None), key=lambda one: one.squares)
         return ended if self.loss.is_linear else [self._settled(ended[0]), *ended[1:]]
 
-    def _settled(self, ended: Ended) -> Ended:
+    def _settled(self, ended: DescentResult) -> DescentResult:
         """With a loss other than squares, by the noise of each signal, which is found on the way."""
         for _ in range(MOST_ROUNDS):
             before, self.within = self.within, self._noise(self.residuals(ended.u))
@@ -197,7 +197,7 @@ class Descent:
                 remedy = "start with values whose run reaches the last sample"
                 raise FitError(f"the run of {record.label}", "ends early with the start values", remedy)
 
-    def _solved(self, u: Array) -> Ended | None:
+    def _solved(self, u: Array) -> DescentResult | None:
         if not np.all(np.isfinite(self.residuals(u))):
             return None
         stay, start = self._stay(), self.numbers.codes()
@@ -213,7 +213,7 @@ class Descent:
         )
         left = self.residuals(found.x)
         costs = left**2 if self.within is None else self.loss.costs(left, self.within)
-        return Ended(found.x, float(np.sum(costs)), found.status > 0)
+        return DescentResult(found.x, float(np.sum(costs)), found.status > 0)
 
     def _stay(self) -> Array:
         """Weights of staying at the start values, which alone decide what the samples leave open."""

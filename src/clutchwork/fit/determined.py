@@ -22,7 +22,7 @@ SMALLEST = 1e-300
 
 
 @dataclass(frozen=True)
-class Known:
+class Identifiability:
     """What the samples say."""
 
     parameters: tuple[Parameter, ...]
@@ -31,7 +31,7 @@ class Known:
     doubts: list[str]  # why residuals are not noise
 
 
-def known(descent: Descent, u: Array, confidence: float) -> Known:
+def known(descent: Descent, u: Array, confidence: float) -> Identifiability:
     """Intervals at a confidence, by the derivatives at a solution."""
     numbers, residuals, jacobian = descent.numbers, _felt(descent, descent.residuals(u)), descent.jacobian(u)
     scales = _scales(descent, jacobian)
@@ -59,7 +59,7 @@ def known(descent: Descent, u: Array, confidence: float) -> Known:
     )
     deviations = np.sqrt(np.diag(covariance))
     doubts = _doubts(descent, residuals)
-    return Known(
+    return Identifiability(
         made, covariance / np.outer(deviations, deviations), {k: v for k, v in correlated.items() if v}, doubts
     )
 

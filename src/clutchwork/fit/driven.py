@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from clutchwork.base.classes import dataclass
 from clutchwork.base.errors import ModelError, Problem, UseError
-from clutchwork.base.shown import listed
+from clutchwork.base.quote import listed
 from clutchwork.declare.node import Signal
 from clutchwork.declare.options import Options
 from clutchwork.fit.failure import FitError

@@ -15,7 +15,7 @@ from clutchwork.fit.intervals import spread_of
 from clutchwork.fit.measurement import Measurement
 from clutchwork.fit.model import model_of
 from clutchwork.fit.ordinates import axis, is_outside
-from clutchwork.fit.search import Search, derivatives
+from clutchwork.fit.search import Residuals, derivatives
 from clutchwork.fit.sliding import coefficients
 
 if TYPE_CHECKING:
@@ -31,14 +31,14 @@ NEAR = 10.0
 
 
 @dataclass(frozen=True)
-class Experiment:
+class ProposedExperiment:
     """One that could be done: in words, and what it would measure."""
 
     words: str
     jacobian: Array
 
 
-def advice(search: Search, u: Array, deviation: float, places: list[int]) -> dict[int, str]:
+def advice(search: Residuals, u: Array, deviation: float, places: list[int]) -> dict[int, str]:
     """For each open parameter the experiment after which it would be known best.
 
     Every candidate is computed with the fitted law, what is open as at the start, with the load and the noise of the
@@ -83,7 +83,7 @@ def _left(known: Information, change: Array) -> float:
     return float(np.sqrt(known.covariance(change[np.newaxis])[0, 0]))
 
 
-def _candidates(search: Search, u: Array) -> Iterator[Experiment]:
+def _candidates(search: Residuals, u: Array) -> Iterator[ProposedExperiment]:
     for temperature in _temperatures(search):
         yield from _steady(search, u, temperature)
         if search.unknowns.law.sticks:
@@ -92,16 +92,16 @@ def _candidates(search: Search, u: Array) -> Iterator[Experiment]:
         yield from _swings(search, u)
 
 
-def _units(search: Search) -> tuple[str, str]:
+def _units(search: Residuals) -> tuple[str, str]:
     return ("m/s", "m") if search.measured.translation else ("rad/s", "rad")
 
 
-def _load(search: Search) -> float:
+def _load(search: Residuals) -> float:
     load = search.measured.load
     return float(np.median(load[load > 0.0]))
 
 
-def _temperatures(search: Search) -> list[float | None]:
+def _temperatures(search: Residuals) -> list[float | None]:
     """Where to measure [K]: at that of the samples, then at those of the tables; None where the law knows none."""
     measured = search.measured.temperature
     if measured is None:
@@ -114,7 +114,7 @@ def _at(temperature: float | None) -> str:
     return "" if temperature is None else f" at {temperature:.4g} K"
 
 
-def _steady(search: Search, u: Array, temperature: float | None) -> Iterator[Experiment]:
+def _steady(search: Residuals, u: Array, temperature: float | None) -> Iterator[ProposedExperiment]:
     """Steady slip, from a thousandth of the smallest measured one to a hundred times the largest, near ones first."""
     slip = np.abs(search.measured.slip)
     moving = slip[slip > search.model.rest]
@@ -137,7 +137,7 @@ def _steady(search: Search, u: Array, temperature: float | None) -> Iterator[Exp
         yield _planned(search, u, words, np.linspace(0.0, 1.0, SAMPLES), sweep, temperature)
 
 
-def _swings(search: Search, u: Array) -> Iterator[Experiment]:
+def _swings(search: Residuals, u: Array) -> Iterator[ProposedExperiment]:
     """Displacements back and forth, slow ones first."""
     for frequency in (0.1, 1.0, 10.0, 100.0):
         time = np.linspace(0.0, 2.0 / frequency, SAMPLES)
@@ -148,18 +148,18 @@ def _swings(search: Search, u: Array) -> Iterator[Experiment]:
 
 
 def _planned(
-    search: Search, u: Array, words: str, time: Array, slip: Array, temperature: float | None = None
-) -> Experiment:
+    search: Residuals, u: Array, words: str, time: Array, slip: Array, temperature: float | None = None
+) -> ProposedExperiment:
     """What the fitted law would show there."""
     full = np.full(SAMPLES, _load(search))
     warm = None if temperature is None else np.full(SAMPLES, temperature)
     plan = Measurement(time, slip, np.zeros(SAMPLES), full, search.measured.translation, False, warm)
     law = search.unknowns.law_at(u)
     # steps are those of the samples: a plan has no torque to judge them by
-    return Experiment(words, Search(model_of(plan, law, 0.0), search.unknowns, search.scales).jacobian(u))
+    return ProposedExperiment(words, Residuals(model_of(plan, law, 0.0), search.unknowns, search.scales).jacobian(u))
 
 
-def _break_away(search: Search, u: Array, temperature: float | None) -> Experiment:
+def _break_away(search: Residuals, u: Array, temperature: float | None) -> ProposedExperiment:
     """Static coefficients of a few torque ramps from rest."""
     load, repeats = _load(search), 10
     slips, warm = np.zeros(1), None if temperature is None else np.array([temperature])
@@ -169,4 +169,4 @@ def _break_away(search: Search, u: Array, temperature: float | None) -> Experime
 
     words = f"raise the torque slowly from rest{_at(temperature)} until it slides, ten times"
     words += ", sampled finely at break-away"
-    return Experiment(words, derivatives(torques, u, search))
+    return ProposedExperiment(words, derivatives(torques, u, search))

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from clutchwork.base.errors import ClutchworkError, advised
 from clutchwork.base.extras import need
-from clutchwork.base.text import counted
+from clutchwork.base.plural import counted
 
 
 class FitError(ClutchworkError, ValueError):

@@ -15,7 +15,7 @@ from clutchwork.fit.failure import scipy
 from clutchwork.fit.information import information
 
 if TYPE_CHECKING:
-    from clutchwork.fit.search import Search
+    from clutchwork.fit.search import Residuals
     from clutchwork.fit.unknown import Unknown
 
 Array = NDArray[np.float64]
@@ -37,7 +37,7 @@ class Estimate:
     felt: Array  # residuals of the equations as they count [N m]
 
 
-def estimate(search: Search, u: Array, confidence: float) -> Estimate:
+def estimate(search: Residuals, u: Array, confidence: float) -> Estimate:
     """Intervals of all parameters at a confidence, and what is not determined."""
     # a bound that samples at rest lean on holds from one side only: it determines nothing
     equations = search.model.equations
@@ -65,7 +65,7 @@ def estimate(search: Search, u: Array, confidence: float) -> Estimate:
     return Estimate(sqrt(variance), t**2 * variance, covariance, limits, why, directions, correlated, residuals)
 
 
-def limits_at(search: Search, u: Array, tolerance: float, places: Array) -> list[tuple[float, float]]:
+def limits_at(search: Residuals, u: Array, tolerance: float, places: Array) -> list[tuple[float, float]]:
     """Intervals at some codes when only those at some places are unknown."""
     jacobian = search.jacobian(u)[search.model.equations]
     known = information(jacobian[:, places], search.measured.size, search.model.exact)
@@ -92,7 +92,7 @@ def widened(correlated: float) -> float:
     return (1.0 + correlated) / (1.0 - correlated)
 
 
-def spread_of(search: Search, u: Array) -> Array:
+def spread_of(search: Residuals, u: Array) -> Array:
     """Derivatives of the codes of all parameters by those that are searched for."""
     unknowns, step = search.unknowns, 1e-6
     columns = []
@@ -113,7 +113,7 @@ def interval(item: Unknown, code: float, half: float, ends: tuple[float, float])
     return max(exp(code - half), lower), min(exp(code + half), upper)
 
 
-def _reach(search: Search, u: Array, place: int, most: float) -> tuple[float, float]:
+def _reach(search: Residuals, u: Array, place: int, most: float) -> tuple[float, float]:
     """How far a parameter without effect can go until bounds at rest break, or samples notice it after all."""
     base, row = float(np.sum(search.residuals(u) ** 2)), search.unknowns.searched[place]
 

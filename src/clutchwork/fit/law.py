@@ -9,22 +9,22 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
-from clutchwork.base.text import counted
+from clutchwork.base.plural import counted
 from clutchwork.declare.node import Law as LawBase
 from clutchwork.fit import table
 from clutchwork.fit.adjustable import faults
-from clutchwork.fit.elsewhere import widened
 from clutchwork.fit.experiment import advice
 from clutchwork.fit.failure import FitError, described_by_nothing
 from clutchwork.fit.intervals import Estimate, estimate
-from clutchwork.fit.losses import WIDTH, Loss
+from clutchwork.fit.losses import WIDTH, Penalty
 from clutchwork.fit.measurement import Measurement, measurement
 from clutchwork.fit.misfit import DESCRIBED, is_worse, patterns
 from clutchwork.fit.model import model_of
 from clutchwork.fit.ordinates import check_inside
+from clutchwork.fit.profile_intervals import widened
 from clutchwork.fit.readings import likely, of_units
 from clutchwork.fit.result import FitResult, Parameter
-from clutchwork.fit.search import Search, Solution
+from clutchwork.fit.search import Residuals, Solution
 from clutchwork.fit.sliding import Sliding, noisy
 from clutchwork.fit.temperature import at_temperature
 from clutchwork.fit.unknown import Bounds
@@ -67,7 +67,7 @@ def fit_law(
     a fit that is worse than the mean of the samples.
     """
     samples = measurement(time, slip, torque, load, temperature=temperature, translation=translation)
-    return _fit(samples, law, free, bounds, rest, confidence, Loss(loss, loss_width))
+    return _fit(samples, law, free, bounds, rest, confidence, Penalty(loss, loss_width))
 
 
 def fit_csv(
@@ -93,7 +93,7 @@ def fit_csv(
     """
     columns = {"time": time, "slip": slip, "torque": torque, "load": load}
     samples = table.read(path, columns if temperature is None else columns | {"temperature": temperature})
-    return _fit(samples, law, free, bounds, rest, confidence, Loss(loss, loss_width))
+    return _fit(samples, law, free, bounds, rest, confidence, Penalty(loss, loss_width))
 
 
 def _fit(
@@ -103,15 +103,15 @@ def _fit(
     bounds: Bounds | None,
     rest: float | None,
     confidence: float,
-    loss: Loss,
+    loss: Penalty,
 ) -> FitResult:
     _check(law, rest, confidence)
 
-    def searched(samples: Measurement) -> tuple[Search, Solution]:
+    def searched(samples: Measurement) -> tuple[Residuals, Solution]:
         samples = at_temperature(samples, law)
         check_inside(samples, law)
         model = model_of(samples, law, rest)
-        search = Search(model, Unknowns(law, free, bounds, translation=samples.translation), loss=loss)
+        search = Residuals(model, Unknowns(law, free, bounds, translation=samples.translation), loss=loss)
         count, equations = len(search.unknowns.searched), int(np.sum(model.equations))
         if equations <= count:
             fault = f"give {equations} equations for {count} parameters"
@@ -133,14 +133,14 @@ def _fit(
     return result
 
 
-def _share(search: Search, solution: Solution) -> float:
+def _share(search: Residuals, solution: Solution) -> float:
     """Share of the variation of the torque that a solution describes."""
     counts = search.model.equations
     left, values = search.residuals(solution.u)[counts], search.measured.torque[counts]
     return search.loss.share(left, values, search.within if np.isfinite(search.within) else 1.0)
 
 
-def _turned(search: Search) -> list[str]:
+def _turned(search: Residuals) -> list[str]:
     """Signs that noise of the slip turned above a threshold of rest that was given."""
     slips = noisy(search.measured) if isinstance(search.model, Sliding) else np.zeros(0)
     if np.all(slips <= search.model.rest):
@@ -149,7 +149,7 @@ def _turned(search: Search) -> list[str]:
     return [f"likely noise of the slip turned the sign of {count} near rest: leave out `rest`, or give {slips[-1]:.3g}"]
 
 
-def _doubts(search: Search, found: Estimate) -> list[str]:
+def _doubts(search: Residuals, found: Estimate) -> list[str]:
     """What says that the law does not describe the samples, whatever its parameters."""
     counts = search.model.equations
     slip, torque = search.measured.slip[counts], search.measured.torque[counts]
@@ -174,7 +174,7 @@ def _check(law: Law, rest: float | None, confidence: float) -> None:
 
 
 def _result(
-    search: Search, solution: Solution, found: Estimate, confidence: float, r2: float, doubts: Sequence[str]
+    search: Residuals, solution: Solution, found: Estimate, confidence: float, r2: float, doubts: Sequence[str]
 ) -> FitResult:
     unknowns, samples, equations = search.unknowns, search.measured, search.model.equations
     law = unknowns.law_at(solution.u)
@@ -212,7 +212,7 @@ def _result(
     )
 
 
-def _remarks(search: Search, residuals: Array, parameters: Sequence[Parameter]) -> list[str]:
+def _remarks(search: Residuals, residuals: Array, parameters: Sequence[Parameter]) -> list[str]:
     """What to know about samples and search."""
     model, made = search.model, of_units(parameters)
     unit, force = ("m/s", "N") if search.measured.translation else ("rad/s", "N m")

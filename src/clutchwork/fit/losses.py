@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from clutchwork.base.classes import dataclass
 from clutchwork.base.errors import near
-from clutchwork.base.shown import shown
+from clutchwork.base.quote import quote
 from clutchwork.fit.failure import FitError
 
 Array = NDArray[np.float64]
@@ -49,7 +49,7 @@ LOSSES: dict[str, Callable[[Array], tuple[Array, Array, Array]]] = {
 
 
 @dataclass(frozen=True)
-class Loss:
+class Penalty:
     """How residuals count."""
 
     kind: str = "linear"
@@ -58,9 +58,9 @@ class Loss:
     def __post_init__(self) -> None:
         if self.kind not in LOSSES:
             told = f"give one of {', '.join(map(repr, LOSSES))}{near(self.kind, LOSSES)}"
-            raise FitError("loss", f"is {shown(self.kind)}", told)
+            raise FitError("loss", f"is {quote(self.kind)}", told)
         if not isinstance(self.width, int | float) or not 0.0 < self.width < np.inf:
-            raise FitError("loss_width", f"is {shown(self.width)}", "give deviations of the noise, such as 1.345")
+            raise FitError("loss_width", f"is {quote(self.width)}", "give deviations of the noise, such as 1.345")
 
     @property
     def is_linear(self) -> bool:

@@ -14,7 +14,7 @@ from clutchwork.base.classes import dataclass
 from clutchwork.base.errors import UseError, near
 from clutchwork.fit.failure import FitError, refuse
 from clutchwork.fit.unknown import Bounds, Pair, Unknown
-from clutchwork.gradients.parameters import ENTRY, Parameter, parameters
+from clutchwork.gradients.parameters import ENTRY, Tunable, parameters
 from clutchwork.model.changes import all_names, named, target
 
 if TYPE_CHECKING:
@@ -80,7 +80,7 @@ def numbers(records: Sequence[Driven], free: Sequence[str], own: Sequence[str], 
     return Numbers(tuple(made), count, tuple(one.name for one in found[0]), sizes)
 
 
-def _found(records: Sequence[Driven], shared: Sequence[str], own: Sequence[str]) -> tuple[list[list[Parameter]], int]:
+def _found(records: Sequence[Driven], shared: Sequence[str], own: Sequence[str]) -> tuple[list[list[Tunable]], int]:
     """The numbers of each record, and how many of them all have in common."""
     refuse(list(_unknown(records[0].system, [*shared, *own])))
     try:
@@ -112,7 +112,7 @@ def _keys(name: str) -> list[str]:
     return [name, f"{parts[1]}.{parts[2]}"] if parts else [name]
 
 
-def _item(one: Parameter, name: str, bounds: Bounds, problems: list[FitError]) -> Unknown:
+def _item(one: Tunable, name: str, bounds: Bounds, problems: list[FitError]) -> Unknown:
     given = next((bounds[key] for key in _keys(one.name) if key in bounds), (None, None))
     try:
         return _made(one, name, given)
@@ -121,7 +121,7 @@ def _item(one: Parameter, name: str, bounds: Bounds, problems: list[FitError]) -
         return replace(_made(one, name, (None, None)), start=one.start)
 
 
-def _made(one: Parameter, name: str, given: Pair) -> Unknown:
+def _made(one: Tunable, name: str, given: Pair) -> Unknown:
     """A number that is searched for, by its logarithm where it is above zero and must not fall below."""
     try:
         low, high = (None if end is None else float(end) for end in given)
@@ -144,7 +144,7 @@ def _made(one: Parameter, name: str, given: Pair) -> Unknown:
     return Unknown(name, one.unit, one.start, words, lower, upper, lowest, highest, one.field)
 
 
-def _declared(one: Parameter) -> str:
+def _declared(one: Tunable) -> str:
     """Bounds of the declaration in words."""
     if one.upper < inf:
         return f"{one.lower:g} to {one.upper:g}"

@@ -10,15 +10,15 @@ from numpy.typing import NDArray
 
 from clutchwork.assembly.system import System
 from clutchwork.base.errors import ModelError
-from clutchwork.base.shown import shown
-from clutchwork.base.text import counted
+from clutchwork.base.plural import counted
+from clutchwork.base.quote import quote
 from clutchwork.declare.calls import explained
-from clutchwork.fit.descent import Descent, Ended
+from clutchwork.fit.descent import Descent, DescentResult
 from clutchwork.fit.determined import known
 from clutchwork.fit.driven import Driven, driven
 from clutchwork.fit.failure import FitError, described_by_nothing, refuse
-from clutchwork.fit.followed import Followed
-from clutchwork.fit.losses import WIDTH, Loss
+from clutchwork.fit.fitted_record import Followed
+from clutchwork.fit.losses import WIDTH, Penalty
 from clutchwork.fit.misfit import is_worse
 from clutchwork.fit.numbers import Numbers, numbers
 from clutchwork.fit.record import Record
@@ -74,7 +74,7 @@ def fit_records(
     system = model if isinstance(model, System) else model.assemble()
     found = driven(system, listed, problems)
     refuse(problems)
-    return _solved(found, numbers(found, names, owned, bounds or {}), confidence, starts, Loss(loss, loss_width))
+    return _solved(found, numbers(found, names, owned, bounds or {}), confidence, starts, Penalty(loss, loss_width))
 
 
 def _names(given: Sequence[str] | str) -> list[str]:
@@ -91,12 +91,12 @@ def _faults(records: list[Any], free: list[Any], own: list[Any], confidence: flo
     if not 0.0 < confidence < 1.0:
         yield FitError("confidence", f"is {confidence!r}", "give a number between 0 and 1, such as 0.95")
     if not (isinstance(starts, int) and starts > 0):
-        yield FitError("starts", f"is {starts!r}", "give a whole number from 1 on")
+        yield FitError("starts", f"is {starts!r}", "give a whole number of at least 1")
     for number, record in enumerate(records):
         if isinstance(record, Record):
             yield from _taken(record, label(record, number), free, own)
         else:
-            yield FitError("records", f"hold {shown(record)}", "give each as a Record(time, measured)")
+            yield FitError("records", f"hold {quote(record)}", "give each as a Record(time, measured)")
 
 
 def _taken(record: Record, of: str, free: Sequence[str], own: Sequence[str]) -> Iterator[FitError]:
@@ -110,7 +110,7 @@ def _taken(record: Record, of: str, free: Sequence[str], own: Sequence[str]) -> 
             yield FitError(name, f"is free, and {of} sets it", remedy)
 
 
-def _solved(records: Sequence[Driven], searched: Numbers, confidence: float, starts: int, loss: Loss) -> ResponseFit:
+def _solved(records: Sequence[Driven], searched: Numbers, confidence: float, starts: int, loss: Penalty) -> ResponseFit:
     descent = Descent(records, searched, loss)
     ended = descent.solve(starts)
     best = ended[0]
@@ -158,7 +158,7 @@ def _rms(records: Sequence[Followed]) -> dict[str, float]:
     return {name: float(np.sqrt(np.mean(np.concatenate(of) ** 2))) for name, of in rows.items()}
 
 
-def _share(descent: Descent, best: Ended) -> float:
+def _share(descent: Descent, best: DescentResult) -> float:
     """Share of the variation of the samples that the runs describe."""
     values, weights = (np.concatenate(rows) for rows in (descent.measured, descent.weights))
     scales = np.ones(len(values)) if descent.within is None else descent.within
@@ -170,7 +170,7 @@ def _share(descent: Descent, best: Ended) -> float:
     return 1.0 - best.squares / sum(variation) if sum(variation) > 0.0 else float("nan")
 
 
-def _remarks(descent: Descent, ended: Sequence[Ended], starts: int) -> list[str]:
+def _remarks(descent: Descent, ended: Sequence[DescentResult], starts: int) -> list[str]:
     """How the search went."""
     made = []
     if descent.fallen:

@@ -12,8 +12,8 @@ from numpy.typing import NDArray
 
 from clutchwork.base.classes import dataclass
 from clutchwork.base.errors import near
-from clutchwork.base.text import counted
-from clutchwork.fit.followed import Followed
+from clutchwork.base.plural import counted
+from clutchwork.fit.fitted_record import Followed
 from clutchwork.fit.response_picture import picture
 from clutchwork.fit.result import Parameter, table
 

@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 
 from clutchwork.base.classes import dataclass
 from clutchwork.base.errors import ClutchworkError, near
-from clutchwork.base.text import columns
+from clutchwork.base.plural import columns
 from clutchwork.fit.fitted import Fitted
 from clutchwork.fit.picture import picture
 

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from clutchwork.base.classes import dataclass
 from clutchwork.fit.failure import scipy
-from clutchwork.fit.losses import Loss
+from clutchwork.fit.losses import Penalty
 
 if TYPE_CHECKING:
     from clutchwork.fit.model import Model
@@ -37,12 +37,14 @@ class Solution:
     squares: float  # N2 m2, sum over the samples, as they count
 
 
-class Search:
+class Residuals:
     """Residuals of all samples over the codes of the free parameters, and their derivatives."""
 
-    def __init__(self, model: Model, unknowns: Unknowns, scales: Array | None = None, loss: Loss | None = None) -> None:
+    def __init__(
+        self, model: Model, unknowns: Unknowns, scales: Array | None = None, loss: Penalty | None = None
+    ) -> None:
         self.model, self.unknowns, self._scales = model, unknowns, scales
-        self.measured, self.loss = model.measured, loss or Loss()
+        self.measured, self.loss = model.measured, loss or Penalty()
         # of the residuals, from where on they count less [N m]
         self.within = np.inf
         self.step = STEP_EXACT if model.exact else STEP_RUN
@@ -125,7 +127,7 @@ class Search:
 
 
 def derivatives(
-    function: Callable[[Array], Array], u: Array, search: Search, places: Iterable[int] | None = None
+    function: Callable[[Array], Array], u: Array, search: Residuals, places: Iterable[int] | None = None
 ) -> Array:
     """Difference quotients by every code, or some: central inside the bounds, one-sided at them."""
     lower, upper = search.unknowns.lower, search.unknowns.upper

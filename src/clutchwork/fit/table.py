@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from clutchwork.base.classes import dataclass
 from clutchwork.base.errors import near
-from clutchwork.base.shown import listed
+from clutchwork.base.quote import listed
 from clutchwork.declare.quantity import QuantityError
 from clutchwork.declare.units import parse
 from clutchwork.fit.failure import FitError
@@ -27,7 +27,7 @@ UNITS = {"time": ("s",), "slip": ("rad/s", "m/s"), "torque": ("N m", "N"), "load
 
 
 @dataclass(frozen=True)
-class Head:
+class TableHead:
     """A column by its name with its unit, and whether the unit is one of translation."""
 
     text: str
@@ -73,12 +73,12 @@ def _heads(path: Path) -> list[str]:
         return []
 
 
-def _head(name: str, wanted: str, known: list[str]) -> Head:
+def _head(name: str, wanted: str, known: list[str]) -> TableHead:
     """The head that is meant; that of a file that cannot be read stays, so that reading it says why."""
     found = meant(wanted, known)
     if not found:
         if not known:
-            return Head(wanted, None)
+            return TableHead(wanted, None)
         hint = near(wanted, known) or near(split(wanted)[0], [split(head)[0] for head in known])
         remedy = f"the columns are {listed(known)}{hint}"
         raise FitError(name, f"has no column {wanted!r}", remedy)
@@ -90,10 +90,10 @@ def _head(name: str, wanted: str, known: list[str]) -> Head:
     # a name with a unit gives it to a head without
     text = wanted if head.unit and not split(head.text)[1] else head.text
     if not head.unit or name in ("time", "temperature"):
-        return Head(text, None)
-    return Head(text, parse(head.unit).powers != parse(units[0]).powers)
+        return TableHead(text, None)
+    return TableHead(text, parse(head.unit).powers != parse(units[0]).powers)
 
 
-def _table(path: str | Path, head: Head, time: Head) -> Array:
+def _table(path: str | Path, head: TableHead, time: TableHead) -> Array:
     """Times and values of a column, a row each."""
     return np.array(Column(str(path), head.text, time=time.text).points)

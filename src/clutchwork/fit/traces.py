@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from clutchwork.base.classes import dataclass
 from clutchwork.base.errors import near
-from clutchwork.base.shown import shown
+from clutchwork.base.quote import quote
 from clutchwork.declare.quantity import QuantityError, scale_to_si
 from clutchwork.fit.failure import FitError, rising
 from clutchwork.results.forms import Mode
@@ -47,15 +47,15 @@ def traces(record: Record, known: Mapping[str, Channel], of: str) -> Iterator[Tr
         yield FitError(f"{of}measured", "is empty", "give at least one name")
     for name in [*record.deviation, *record.units]:
         if name not in record.measured and name not in record.inputs:
-            told = f"is given for {shown(name)}, which is not measured{near(name, record.measured)}"
+            told = f"is given for {quote(name)}, which is not measured{near(name, record.measured)}"
             yield FitError(f"{of}deviation" if name in record.deviation else f"{of}units", told, "take it out")
     for name, given in record.measured.items():
         channel = known.get(name)
         if channel is None:
-            told = f"has no signal {shown(name)}{near(name, known)}"
+            told = f"has no signal {quote(name)}{near(name, known)}"
             yield FitError(f"{of}measured", told, 'give the name of one, "load.speed"')
         elif isinstance(channel.evaluate, Mode):
-            yield FitError(f"{of}measured", f"{shown(name)} has words, no numbers", "take a speed, a torque or a slip")
+            yield FitError(f"{of}measured", f"{quote(name)} has words, no numbers", "take a speed, a torque or a slip")
         else:
             yield from _trace(record, name, given, channel.unit, of)
 
@@ -126,6 +126,6 @@ def _deviation(record: Record, name: str, values: Array, unit: str, of: str) -> 
     found = np.full(len(values), given, dtype=float) if np.ndim(given) == 0 and not isinstance(given, str) else None
     found = _numbers(f"{of}deviation of {name}", given) if found is None else found
     if len(found) != len(values) or not np.all((found > 0.0) & (found < np.inf)):
-        told = f"of {name} is {shown(given)}"
+        told = f"of {name} is {quote(given)}"
         raise FitError(f"{of}deviation", told, f"give a number above zero in [{unit}], or one for each sample")
     return found

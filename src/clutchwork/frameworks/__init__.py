@@ -1,1 +1,1 @@
-"""What a driveline gives, with its derivatives, as a function of other people's frameworks: JAX and PyTorch."""
+"""Drivelines as differentiable functions of JAX and PyTorch."""

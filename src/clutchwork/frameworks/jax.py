@@ -11,7 +11,7 @@ import numpy as np
 
 from clutchwork.base.errors import UseError
 from clutchwork.base.extras import need
-from clutchwork.base.shown import shown
+from clutchwork.base.quote import quote
 from clutchwork.declare.calls import explained
 from clutchwork.frameworks.lines import no_second, refuse, values, values_and_matrix
 from clutchwork.gradients.differentiable import Differentiable
@@ -35,7 +35,7 @@ def to_jax(f: Differentiable) -> Callable[[Any], Any]:
     """
     jax = need("jax", "jax", CALL)
     if not isinstance(f, Differentiable):
-        raise UseError(CALL, [f"f is {shown(f)}: give what cw.differentiable gives"])
+        raise UseError(CALL, [f"f is {quote(f)}: give what cw.differentiable gives"])
     function = _differentiated(jax, f)
 
     def of_driveline(x: Any) -> Any:

@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from clutchwork.base.errors import UseError
-from clutchwork.base.text import counted
+from clutchwork.base.plural import counted
 from clutchwork.gradients.differentiable import Differentiable
 
 Array = NDArray[np.float64]

@@ -8,7 +8,7 @@ from typing import Any
 
 from clutchwork.base.errors import UseError
 from clutchwork.base.extras import need
-from clutchwork.base.shown import shown
+from clutchwork.base.quote import quote
 from clutchwork.declare.calls import explained
 from clutchwork.frameworks.lines import no_second, refuse, values, values_and_matrix
 from clutchwork.gradients.differentiable import Differentiable
@@ -31,7 +31,7 @@ def to_torch(f: Differentiable) -> Callable[[Any], Any]:
     """
     torch = need("torch", "torch", CALL)
     if not isinstance(f, Differentiable):
-        raise UseError(CALL, [f"f is {shown(f)}: give what cw.differentiable gives"])
+        raise UseError(CALL, [f"f is {quote(f)}: give what cw.differentiable gives"])
 
     def of_driveline(x: Any) -> Any:
         given = torch.as_tensor(x)

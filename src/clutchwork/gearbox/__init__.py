@@ -1,1 +1,1 @@
-"""Gearboxes from teeth and a shift table: what they are, what follows from it, those that are known."""
+"""Gearboxes from teeth and a shift table: ratios, torques, and the catalogue."""

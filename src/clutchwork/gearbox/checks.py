@@ -6,7 +6,7 @@ from collections.abc import Iterator
 from typing import TYPE_CHECKING
 
 from clutchwork.base.errors import Problem, near
-from clutchwork.base.shown import listed, shown
+from clutchwork.base.quote import listed, quote
 from clutchwork.declare.rational import eliminate
 from clutchwork.gearbox.gear_set import HOUSING
 from clutchwork.gearbox.motion import GEAR, INPUT_HELD, NEUTRAL, OUTPUT_HELD, TIE_UP, Combination, combination, speeds
@@ -41,14 +41,14 @@ def _name_problems(box: Definition) -> Iterator[Problem]:
     taken = shared | set(box.members) & ({one.name for one in box.sets} | {e.name for e in box.elements})
     named = [*(one.name for one in box.sets), *(element.name for element in box.elements), *box.gears]
     for name in dict.fromkeys(name for name in named if name in ("", HOUSING)):
-        yield Problem("gearbox", "", f"{shown(name)} cannot name a set, an element or a gear", remedy="rename it")
+        yield Problem("gearbox", "", f"{quote(name)} cannot name a set, an element or a gear", remedy="rename it")
     for name in sorted(taken):
-        yield Problem("gearbox", "", f"{shown(name)} names two things", remedy="rename one of them")
+        yield Problem("gearbox", "", f"{quote(name)} names two things", remedy="rename one of them")
     for name in ("input", "output"):
         if getattr(box, name) == HOUSING:
             yield Problem("gearbox", name, "is the housing", remedy="name a member that turns")
     if box.input == box.output:
-        yield Problem("gearbox", "output", "is the input too", shown(box.output), "name two members")
+        yield Problem("gearbox", "output", "is the input too", quote(box.output), "name two members")
     if not box.sets:
         yield Problem("gearbox", "sets", "are missing", remedy="give at least one gear set: [sets.P1]")
 
@@ -65,19 +65,19 @@ def _member_problems(box: Definition) -> Iterator[Problem]:
     for member in box.members:
         if member.strip().lower() == HOUSING:
             remedy = f"write {HOUSING!r}, all small, for what never turns"
-            yield Problem("gearbox", "", f"{shown(member)} is not the name of a member", remedy=remedy)
+            yield Problem("gearbox", "", f"{quote(member)} is not the name of a member", remedy=remedy)
     ends = {box.input, box.output, HOUSING, *box.shafts}
     for name in ("input", "output"):
         member = getattr(box, name)
         if member not in places and member != HOUSING:
             meant = near(member, places)
             yield Problem(
-                "gearbox", name, f"is not a member of any set or element{meant}", shown(member), _known(places)
+                "gearbox", name, f"is not a member of any set or element{meant}", quote(member), _known(places)
             )
     for member, where in places.items():
         if len(where) == 1 and member not in ends and where[0].startswith("element"):
             others = [other for other in places if other != member]
-            fault = f"joins {shown(member)}, which no set and no other element has{near(member, others)}"
+            fault = f"joins {quote(member)}, which no set and no other element has{near(member, others)}"
             yield Problem(where[0], "", fault, remedy="correct the name, or list it under `shafts`")
 
 
@@ -107,7 +107,7 @@ def _row_problems(box: Definition) -> Iterator[Problem]:
                 meant = near(name, names)
                 remedy = "" if meant else f"known elements: {listed(names)}" if names else "give elements: [elements]"
                 yield Problem(
-                    path, "", f"closes {shown(name)}, which is not an element of this box{meant}", remedy=remedy
+                    path, "", f"closes {quote(name)}, which is not an element of this box{meant}", remedy=remedy
                 )
     seen: dict[frozenset[str], str] = {}
     for gear in box.gears:
@@ -217,7 +217,7 @@ def _freewheel_problems(box: Definition, gear: str) -> Iterator[Problem]:
             yield Problem(f'gear "{gear}"', "", fault, remedy=remedy)
         elif found.torques.get(wheel.name, 0.0) < 0.0:
             fault = f"freewheel {wheel.name} would overrun under torque from {box.input}"
-            remedy = f"swap its members: [{shown(wheel.second)}, {shown(wheel.first)}]"
+            remedy = f"swap its members: [{quote(wheel.second)}, {quote(wheel.first)}]"
             yield Problem(f'gear "{gear}"', "", fault, remedy=remedy)
 
 

@@ -11,8 +11,8 @@ from clutchwork.base.above import above
 from clutchwork.base.classes import dataclass
 from clutchwork.base.errors import Problem, UseError, near
 from clutchwork.base.paths import fitting, path_of
-from clutchwork.base.shown import listed, shown
-from clutchwork.base.text import counted
+from clutchwork.base.plural import counted
+from clutchwork.base.quote import listed, quote
 from clutchwork.base.writing import put
 from clutchwork.declare.calls import explain, explained, explained_methods
 from clutchwork.gearbox import analysis, checks, motion, store
@@ -84,7 +84,7 @@ class Gearbox(Definition):
         if isinstance(gear, str):
             if gear not in self.gears:
                 raise UseError(
-                    "box.state", [f"{shown(gear)} is not a gear{near(gear, self.gears, _known(self.gears))}"]
+                    "box.state", [f"{quote(gear)} is not a gear{near(gear, self.gears, _known(self.gears))}"]
                 )
             closed = self.closed_in(gear)
         else:
@@ -122,12 +122,12 @@ class Gearbox(Definition):
     def _elements(self, call: str, closed: Sequence[str]) -> tuple[str, ...]:
         """Names of elements, as they were given; UseError for others."""
         if isinstance(closed, str) or not isinstance(closed, Iterable):
-            raise UseError(call, [f"{shown(closed)} is not a list of elements; write ('A', 'B')"])
+            raise UseError(call, [f"{quote(closed)} is not a list of elements; write ('A', 'B')"])
         names = [element.name for element in self.elements]
         wrong = [name for name in closed if name not in names]
         if wrong:
             raise UseError(
-                call, [f"{shown(name)} is not an element{near(name, names, _known(names))}" for name in wrong]
+                call, [f"{quote(name)} is not an element{near(name, names, _known(names))}" for name in wrong]
             )
         return tuple(closed)
 
@@ -145,7 +145,7 @@ class Gearbox(Definition):
 
     def __repr__(self) -> str:
         has = {"sets": self.sets, "elements": self.elements, "gears": self.gears}
-        return f"<Gearbox {shown(self.name)}: {', '.join(counted(len(all_), of) for of, all_ in has.items())}>"
+        return f"<Gearbox {quote(self.name)}: {', '.join(counted(len(all_), of) for of, all_ in has.items())}>"
 
     def __str__(self) -> str:
         return summary(self)

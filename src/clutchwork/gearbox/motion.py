@@ -52,7 +52,7 @@ def _by_place(row: dict[str, Fraction], places: dict[str, int]) -> Row:
 
 
 def speeds(box: Definition, closed: Collection[str]) -> dict[str, Row]:
-    """Speed of each member over the members that are left free, by their places among all."""
+    """Speed of each member as a linear combination of the speeds of the free members."""
     echelon = solved(box, closed)
     found = dict[str, Row]()
     for place, member in enumerate(box.members):

@@ -7,30 +7,30 @@ from functools import cache, lru_cache
 from typing import Any, NamedTuple
 
 from clutchwork.base.errors import ModelError, Problem, advised
-from clutchwork.base.shown import shown
+from clutchwork.base.quote import quote
 from clutchwork.gearbox import checks, store
 from clutchwork.gearbox.definition import Definition
 
 
-class Read(NamedTuple):
+class ReadGearbox(NamedTuple):
     """A gearbox, None where it has mistakes, and these: message and remedy."""
 
     box: Definition | None
     problems: tuple[tuple[str, str], ...] = ()
 
 
-def read(source: Any) -> Read:
+def read(source: Any) -> ReadGearbox:
     """A gearbox, or what is wrong with it."""
     if isinstance(source, Definition):
         found = _problems(source)
-        return Read(None if found else source, found)
+        return ReadGearbox(None if found else source, found)
     if not isinstance(source, str | Mapping):
         remedy = "give a cw.Gearbox, a name of the catalogue, the path of a TOML file, or its content"
-        return Read(None, ((f"is not a gearbox: {shown(source)}", remedy),))
+        return ReadGearbox(None, ((f"is not a gearbox: {quote(source)}", remedy),))
     try:
-        return Read(_named(source) if isinstance(source, str) else store.from_data(source))
+        return ReadGearbox(_named(source) if isinstance(source, str) else store.from_data(source))
     except ModelError as error:
-        return Read(None, _told(error.problems))
+        return ReadGearbox(None, _told(error.problems))
 
 
 @cache

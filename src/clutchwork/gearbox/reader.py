@@ -7,7 +7,7 @@ from math import isfinite
 from typing import Any
 
 from clutchwork.base.errors import Problem, near
-from clutchwork.base.shown import listed, shown
+from clutchwork.base.quote import listed, quote
 from clutchwork.gearbox.definition import ELEMENTS, Definition, ShiftElement
 from clutchwork.gearbox.gear_set import HOUSING, KINDS, GearSet
 
@@ -21,7 +21,7 @@ MOST = 1e6
 SET = ("type", "planets", "equally_spaced", "efficiency")
 
 
-class Reader:
+class GearboxReader:
     """Turns plain data into a definition and collects what is wrong with it."""
 
     def __init__(self) -> None:
@@ -30,7 +30,7 @@ class Reader:
     def definition(self, data: Any) -> Definition | None:
         """The gearbox of the data; None where something is missing or wrong."""
         if not isinstance(data, Mapping):
-            self._report("gearbox", "", "must be a table", shown(data), "see the guide on gearboxes")
+            self._report("gearbox", "", "must be a table", quote(data), "see the guide on gearboxes")
             return None
         self._unknown(data, TOP, "gearbox")
         values: dict[str, Any] = {name: self._text(data, name) for name in ("name", "input", "output")}
@@ -66,13 +66,13 @@ class Reader:
         if isinstance(value, str) and (value or default == ""):
             return value
         message = "must be a string" if key in data else "is missing"
-        self._report("gearbox", key, message, shown(value) if key in data else "", REMEDIES.get(key, ""))
+        self._report("gearbox", key, message, quote(value) if key in data else "", REMEDIES.get(key, ""))
         return ""
 
     def _form(self, value: Any) -> str:
         if value not in FORMS:
             self._report(
-                "gearbox", "ratio_form", "is an unknown choice", shown(value), f"choose one of {listed(FORMS)}"
+                "gearbox", "ratio_form", "is an unknown choice", quote(value), f"choose one of {listed(FORMS)}"
             )
         return str(value)
 
@@ -80,7 +80,7 @@ class Reader:
         value = data.get(key, {})
         if isinstance(value, Mapping):
             return {str(name): entry for name, entry in value.items()}
-        self._report("gearbox", key, "must be a table", shown(value), f"write [{key}] above its lines")
+        self._report("gearbox", key, "must be a table", quote(value), f"write [{key}] above its lines")
         return {}
 
     def _number(
@@ -103,7 +103,7 @@ class Reader:
         fits = isinstance(value, int) and not isinstance(value, bool) if whole else _is_number(value)
         low = fits and ((at_least is not None and value < at_least) or (above is not None and value <= above))
         if not fits or low or (at_most is not None and value > at_most) or (not zero and value == 0):
-            self._report(path, quantity, wanted, shown(value), "correct it")
+            self._report(path, quantity, wanted, quote(value), "correct it")
         return value
 
     def _names(self, value: Any, path: str, quantity: str) -> tuple[str, ...]:
@@ -111,19 +111,19 @@ class Reader:
             for name in {name for name in value if list(value).count(name) > 1}:
                 self._report(path, quantity, f"names {name} twice", remedy="name it once")
             return tuple(value)
-        self._report(path, quantity, "must be a list of names", shown(value), 'write ["A", "B"]')
+        self._report(path, quantity, "must be a list of names", quote(value), 'write ["A", "B"]')
         return ()
 
     def _sets(self, tables: Mapping[str, Any]) -> Iterator[GearSet]:
         for name, entry in tables.items():
             path = f'set "{name}"'
             if not isinstance(entry, Mapping):
-                self._report(path, "", "must be a table", shown(entry), f"write [sets.{name}] above its keys")
+                self._report(path, "", "must be a table", quote(entry), f"write [sets.{name}] above its keys")
                 continue
             kind = entry.get("type", "")
             if not isinstance(kind, str) or kind not in KINDS:
                 message = "is missing" if "type" not in entry else f"is an unknown type{near(kind, KINDS)}"
-                value = shown(kind) if "type" in entry else ""
+                value = quote(kind) if "type" in entry else ""
                 self._report(path, "type", message, value, f"choose one of {listed(KINDS)}")
                 continue
             before = len(self.problems)
@@ -156,7 +156,7 @@ class Reader:
             self._number(planets, path, "planets", at_least=1, whole=True)
         spaced = entry.get("equally_spaced", True)
         if not isinstance(spaced, bool):
-            self._report(path, "equally_spaced", "must be true or false", shown(spaced), "write true or false")
+            self._report(path, "equally_spaced", "must be true or false", quote(spaced), "write true or false")
         efficiency = self._number(entry.get("efficiency", 1.0), path, "efficiency", above=0.0, at_most=1.0)
         return GearSet(name, kind, members, teeth, ratios, planets, spaced, efficiency)
 
@@ -166,7 +166,7 @@ class Reader:
             return value
         message, remedy = "must be the name of a member", f"give a name, or {HOUSING!r} for one that never turns"
         given = port in entry
-        self._report(path, port, message if given else "is missing", shown(value) if given else "", remedy)
+        self._report(path, port, message if given else "is missing", quote(value) if given else "", remedy)
         return ""
 
     def _elements(self, tables: Mapping[str, Any]) -> Iterator[ShiftElement]:
@@ -181,7 +181,7 @@ class Reader:
             kind = table.get("type", "brake" if HOUSING in members else "clutch")
             if not isinstance(kind, str) or kind not in ELEMENTS:
                 fault = f"is an unknown type{near(kind, ELEMENTS)}"
-                self._report(path, "type", fault, shown(kind), f"choose one of {listed(ELEMENTS)}")
+                self._report(path, "type", fault, quote(kind), f"choose one of {listed(ELEMENTS)}")
             if len(self.problems) == before:
                 first, second = members
                 # of a brake the member stands first

@@ -14,12 +14,12 @@ from pathlib import Path
 from typing import Any
 
 from clutchwork.base.errors import ModelError, ModelFileError, Problem, near
+from clutchwork.base.quote import listed, quote, shortened
 from clutchwork.base.regular import read_regular, reason
-from clutchwork.base.shown import listed, shortened, shown
 from clutchwork.base.toml_text import parsed
 from clutchwork.gearbox.checks import problems
 from clutchwork.gearbox.definition import Definition
-from clutchwork.gearbox.reader import Reader
+from clutchwork.gearbox.reader import GearboxReader
 
 CATALOGUE = Path(__file__).parent / "catalogue"
 ENDINGS = (".toml", ".json")
@@ -67,7 +67,7 @@ def _path(source: str | Path) -> Path:
                 "" if near(source, names()) else f"known gearboxes: {listed(names())}; a file ends in .toml or .json"
             )
             fault = f"is not in the catalogue{near(source, names())}"
-            raise ModelFileError([Problem(f"gearbox {shown(source)}", "", fault, remedy=remedy)])
+            raise ModelFileError([Problem(f"gearbox {quote(source)}", "", fault, remedy=remedy)])
         return CATALOGUE / f"{source}.toml"
     return path
 
@@ -98,7 +98,7 @@ def _parsed(path: Path, text: str) -> Any:
 
 def from_data(data: Any, source: str = "", lines: Mapping[tuple[str, str], int] | None = None) -> Definition:
     """A gearbox from the content of a file; ModelError with all mistakes."""
-    reader = Reader()
+    reader = GearboxReader()
     made = reader.definition(data)
     found = reader.problems or (problems(made) if made else [])
     if made is None or found:
@@ -163,7 +163,7 @@ def shift_table(text: str) -> tuple[dict[str, list[str]], dict[str, float], list
                 gears[gear].append(name)
             elif cell.lower() not in BLANKS:
                 remedy = "mark closed elements with x, leave others empty"
-                found.append(Problem(path, name, "is not a mark", shown(cell), remedy))
+                found.append(Problem(path, name, "is not a mark", quote(cell), remedy))
     return gears, ratios, found
 
 
@@ -179,7 +179,7 @@ def _read_ratio(gear: str, cell: str, ratios: dict[str, float], found: list[Prob
     try:
         ratios[gear] = float(cell.replace(",", ".").replace("−", "-"))
     except ValueError:
-        found.append(Problem(f'gear "{gear}"', "ratio", "is not a number", shown(cell), "correct it or leave it empty"))
+        found.append(Problem(f'gear "{gear}"', "ratio", "is not a number", quote(cell), "correct it or leave it empty"))
 
 
 def with_shift_table(data: Mapping[str, Any], path: str | Path, text: str | None = None) -> Definition:

@@ -7,7 +7,7 @@ from collections.abc import Iterable
 from math import isnan
 from typing import TYPE_CHECKING
 
-from clutchwork.base.text import columns
+from clutchwork.base.plural import columns
 from clutchwork.gearbox.analysis import capacities, states, swaps
 from clutchwork.gearbox.motion import all_combinations
 
@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 
 
 def summary(box: Definition) -> str:
-    """Everything that follows from the teeth and the shift table, as one text."""
+    """All tables that follow from the teeth and the shift table, as one string."""
     parts = [
         ("", f"{box.name}: {box.title or 'gearbox'}\n{sets(box)}"),
         ("gears: x closed; ratio input over output; step to the next gear; efficiency with mesh losses", gears(box)),

@@ -1,1 +1,1 @@
-"""Derivatives of what a run gives by its numbers: `cw.differentiable`, and what `run.gradient` calls."""
+"""Derivatives of the outputs of a run by its parameters: `cw.differentiable`, `run.gradient`."""

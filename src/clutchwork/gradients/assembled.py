@@ -12,13 +12,13 @@ from numpy.typing import NDArray
 
 from clutchwork.base.classes import dataclass
 from clutchwork.base.errors import ModelError
-from clutchwork.gradients.packed import Structure, finite, made, with_masses, words_made, words_of
-from clutchwork.gradients.stencils import Bent, Rebuilt, slope
+from clutchwork.gradients.finite_differences import Bent, Rebuilt, slope
+from clutchwork.gradients.system_words import WordStructure, finite, made, with_masses, words_made, words_of
 from clutchwork.results.gradient import NoGradient
 
 if TYPE_CHECKING:
     from clutchwork.assembly.system import System
-    from clutchwork.gradients.parameters import Parameter
+    from clutchwork.gradients.parameters import Tunable
 
 Array = NDArray[np.float64]
 
@@ -37,8 +37,8 @@ class Assembled:
     """
 
     system: System
-    structure: Structure
-    parameters: tuple[Parameter, ...]
+    structure: WordStructure
+    parameters: tuple[Tunable, ...]
     start: Array  # their values in the System
     _systems: dict[bytes, System] = field(default_factory=dict, repr=False)
     _known: dict[tuple[int, bytes], Array] = field(default_factory=dict, repr=False)  # derivatives, by group and values

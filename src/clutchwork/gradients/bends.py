@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from clutchwork.gradients.task import Task
+from clutchwork.gradients.task import GradientTask
 from clutchwork.results.gradient import NoGradient
 
 
@@ -20,7 +20,7 @@ class Bends(Exception):  # noqa: N818, it is caught where it is raised
         self.numbers = numbers
 
 
-def bends_of(none: NoGradient, task: Task) -> Exception:
+def bends_of(none: NoGradient, task: GradientTask) -> Exception:
     """Those that have no derivative; what was said itself where it is of the run."""
     found = {
         number: problem

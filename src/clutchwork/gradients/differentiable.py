@@ -12,22 +12,22 @@ from numpy.typing import NDArray
 
 from clutchwork.base.classes import dataclass
 from clutchwork.base.errors import ModelError, UseError, near
-from clutchwork.base.shown import shown
-from clutchwork.base.text import counted
+from clutchwork.base.plural import counted
+from clutchwork.base.quote import quote
 from clutchwork.declare.calls import explained, explained_methods
 from clutchwork.declare.options import Options
 from clutchwork.gradients.exact import Exact
 from clutchwork.gradients.parameters import parameters
 from clutchwork.gradients.settled import SIDES
-from clutchwork.gradients.task import Found, Task
+from clutchwork.gradients.task import GradientTask, GradientValues
 from clutchwork.results.channels import channels
 from clutchwork.results.gradient import Gradient
 from clutchwork.run.control import controllers
 from clutchwork.run.settings import merged, refuse_endless
 from clutchwork.run.simulation import Assembles, model_of
-from clutchwork.sweeps.batch import Wanted
-from clutchwork.sweeps.order import threads_of
+from clutchwork.sweeps.batch import CoreOutputs
 from clutchwork.sweeps.outputs import Asked, AtTimes, Computed, Output, asked
+from clutchwork.sweeps.request import threads_of
 from clutchwork.sweeps.result import unit_of
 
 if TYPE_CHECKING:
@@ -47,13 +47,13 @@ class Differentiable:
     values, `f.by` the numbers, `f.x0` holds those of the driveline. It never changes, and threads may share it.
     """
 
-    task: Task = field(repr=False)
+    task: GradientTask = field(repr=False)
     engine: Exact = field(repr=False)
     of: tuple[str, ...]
     by: tuple[str, ...]
     of_units: tuple[str, ...]  # SI
     by_units: tuple[str, ...]  # SI
-    _last: list[tuple[bytes, Found]] = field(repr=False, default_factory=list)  # optimisers ask for one point twice
+    _last: list[tuple[bytes, GradientValues]] = field(repr=False, default_factory=list)  # optimisers ask twice
 
     @property
     def x0(self) -> Array:
@@ -144,7 +144,7 @@ class Differentiable:
 
     def __repr__(self) -> str:
         return (
-            f"<Differentiable {shown(self.system.name)}: {counted(len(self.of), 'values')} by {len(self.by)} numbers>"
+            f"<Differentiable {quote(self.system.name)}: {counted(len(self.of), 'values')} by {len(self.by)} numbers>"
         )
 
     # ----------------------------------------------------------------------------------------------------------- points
@@ -158,7 +158,7 @@ class Differentiable:
         except (TypeError, ValueError):
             points = np.zeros(0)
         if points.ndim != 2 or points.shape[1] != len(self.by) or not np.all(np.isfinite(points)):
-            raise UseError("batch", [f"x is {shown(x)}: give lines of {counted(len(self.by), 'numbers')} each"])
+            raise UseError("batch", [f"x is {quote(x)}: give lines of {counted(len(self.by), 'numbers')} each"])
         return np.ascontiguousarray(points)
 
     @contextmanager
@@ -171,10 +171,10 @@ class Differentiable:
             self.engine.refuse_lines(points)
             raise
 
-    def _known(self, point: Array) -> Found | None:
+    def _known(self, point: Array) -> GradientValues | None:
         return next((found for key, found in self._last if key == point.tobytes()), None)
 
-    def _found(self, point: Array) -> Found:
+    def _found(self, point: Array) -> GradientValues:
         found = self._known(point)
         if found is None:
             found = self.engine.gradient(point)
@@ -187,7 +187,7 @@ class Differentiable:
         if isinstance(of, str) and of in self.of:
             return np.array([float(name == of) for name in self.of])
         if of is None or isinstance(of, str):
-            raise UseError("f.objective", [f"of is {shown(of)}: name a value{near(of, self.of, ', '.join(self.of))}"])
+            raise UseError("f.objective", [f"of is {quote(of)}: name a value{near(of, self.of, ', '.join(self.of))}"])
         return _line(of, len(self.of), "of", "value")
 
 
@@ -198,7 +198,7 @@ def _line(given: Any, count: int, name: str, what: str) -> Array:
     except (TypeError, ValueError):
         line = np.zeros(0)
     if line.shape != (count,) or not np.all(np.isfinite(line)):
-        raise UseError("f", [f"{name} is {shown(given)}: give a finite number for each {what}, {count} in all"])
+        raise UseError("f", [f"{name} is {quote(given)}: give a finite number for each {what}, {count} in all"])
     return line
 
 
@@ -241,19 +241,19 @@ def made(
 ) -> Differentiable:
     """The function for what is asked for."""
     if side is not None and side not in SIDES:
-        raise UseError("gradient", [f"side is {shown(side)}: give 'left' or 'right', or leave it out"])
+        raise UseError("gradient", [f"side is {quote(side)}: give 'left' or 'right', or leave it out"])
     try:
         outputs = asked(of)
         _refuse(system, outputs)
         chosen = parameters(system, by)
-        Wanted.of(system, options, outputs, t_end)
+        CoreOutputs.of(system, options, outputs, t_end)
     except UseError as error:
         # outputs are those of a sweep, and say so
         raise UseError("gradient", error.problems) from None
     known = channels(system, options.angles, options.work)
     labels = [(label, unit_of(one, known)) for name, one in outputs.items() for label in _labels(name, one)]
     names, units = zip(*labels, strict=True)
-    task = Task(system, outputs, chosen, t_end, options, threads_of(threads, "gradient"), names, side)
+    task = GradientTask(system, outputs, chosen, t_end, options, threads_of(threads, "gradient"), names, side)
     by_units = tuple(one.unit for one in chosen)
     return Differentiable(task, Exact(task), names, tuple(one.name for one in chosen), units, by_units)
 

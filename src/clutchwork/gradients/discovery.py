@@ -9,8 +9,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from clutchwork.base.errors import ModelError
-from clutchwork.gradients.packed import Structure, words_made
-from clutchwork.gradients.parameters import Parameter
+from clutchwork.gradients.parameters import Tunable
+from clutchwork.gradients.system_words import WordStructure, words_made
 from clutchwork.gradients.tables import TableWords
 from clutchwork.model.changes import field_of, named, target
 
@@ -26,7 +26,7 @@ Places = NDArray[np.int64]
 PROBES = (1e-3, -1.7e-3, 2.3e-3, -2.9e-3)
 
 
-def identity(system: System, structure: Structure, one: Parameter, value: float) -> Places | None:
+def identity(system: System, structure: WordStructure, one: Tunable, value: float) -> Places | None:
     """The words that a number is, None where it is more than that."""
     if one.places or _is_shared(system, one):
         return None
@@ -46,13 +46,13 @@ def identity(system: System, structure: Structure, one: Parameter, value: float)
     return None
 
 
-def _is_shared(system: System, one: Parameter) -> bool:
+def _is_shared(system: System, one: Tunable) -> bool:
     """Whether the assembly makes something of a number together with others, such as the larger of two."""
     aim = target(named(system.source), one.field) if system.source else None
     return aim is None or field_of(aim)[1].what == "option" or aim.path[-1] == "band"
 
 
-def tables(system: System, structure: Structure, parameters: Sequence[Parameter]) -> Iterator[TableWords]:
+def tables(system: System, structure: WordStructure, parameters: Sequence[Tunable]) -> Iterator[TableWords]:
     """Tables of numbers that are signals of their own."""
     fields = dict.fromkeys(one.field for one in parameters if one.places)
     for name in fields:
@@ -64,7 +64,7 @@ def tables(system: System, structure: Structure, parameters: Sequence[Parameter]
 
 
 def _beside(system: System, name: str) -> System | None:
-    """A System with other values in a table; None where there is none, or it is a list."""
+    """A System whose table of that name has perturbed values; None where the name is not that of a table of pairs."""
     aim = target(named(system.source), name) if system.source else None
     points: Any = field_of(aim)[0] if aim else ()
     if not points or not all(hasattr(point, "__len__") and len(point) == 2 for point in points):
@@ -80,7 +80,7 @@ def _beside(system: System, name: str) -> System | None:
     return None
 
 
-def together(system: System, parameters: Sequence[Parameter], x: Array, fixed: Sequence[int]) -> tuple[Array, Array]:
+def together(system: System, parameters: Sequence[Tunable], x: Array, fixed: Sequence[int]) -> tuple[Array, Array]:
     """A point at which all numbers but those that are fixed are others, and the words there."""
     moves = np.array([_room(one, value) for one, value in zip(parameters, x.tolist(), strict=True)])
     moves[list(fixed)] = 0.0
@@ -93,6 +93,6 @@ def together(system: System, parameters: Sequence[Parameter], x: Array, fixed: S
     return x, np.zeros(0)
 
 
-def _room(one: Parameter, value: float) -> float:
+def _room(one: Tunable, value: float) -> float:
     """By how much a number may move without another structure: a knot at 0 stays there."""
     return min(one.scale, one.reach) * (value != 0.0) if np.isfinite(one.reach) else one.scale

@@ -15,12 +15,12 @@ from numpy.typing import NDArray
 
 from clutchwork.base.classes import dataclass
 from clutchwork.gradients.beginning import at_rest
+from clutchwork.gradients.contact_at_rest import unpressed
 from clutchwork.gradients.grazing import crowded, decided_at_knots, jumping_together, refused, struck_together
 from clutchwork.gradients.knots import times_of
 from clutchwork.gradients.lines import Line
-from clutchwork.gradients.pressing import unpressed
 from clutchwork.gradients.primal import SAME
-from clutchwork.gradients.runs import Point, Run, Runs
+from clutchwork.gradients.runs import Run, RunPoint, Runs
 
 Mask = NDArray[np.bool_]
 
@@ -40,7 +40,7 @@ class Doubts:
     """All that is in doubt in a run."""
 
     runs: Runs
-    point: Point
+    point: RunPoint
     run: Run
     lines: Sequence[Line]
     sizes: NDArray[np.float64]  # of the numbers

@@ -17,10 +17,10 @@ from clutchwork.gradients.doubts import Doubt, Doubts
 from clutchwork.gradients.grazing import noted, together
 from clutchwork.gradients.jerk import massless
 from clutchwork.gradients.lines import Line, lines, without_derivatives
-from clutchwork.gradients.measures import Asked, measures
-from clutchwork.gradients.runs import Point, Run, Runs
+from clutchwork.gradients.measures import Context, measures
+from clutchwork.gradients.runs import Run, RunPoint, Runs
 from clutchwork.gradients.settled import NEARER, STEP, Beside, Settling
-from clutchwork.gradients.task import Found, Task
+from clutchwork.gradients.task import GradientTask, GradientValues
 from clutchwork.results.gradient import NoGradient
 from clutchwork.sweeps.outputs import Integral
 
@@ -38,7 +38,7 @@ FOLLOWED_FROM, FOLLOWED_FOR_EACH = 12, 4
 class Exact:
     """Runs with derivatives."""
 
-    task: Task
+    task: GradientTask
 
     @cached_property
     def runs(self) -> Runs:
@@ -46,10 +46,10 @@ class Exact:
         return Runs(self.task)
 
     @cached_property
-    def _asked(self) -> Asked:
+    def _asked(self) -> Context:
         wanted = self.runs.wanted
         kept = {one.name: wanted.kept_as(one) for one in wanted.outputs.values() if isinstance(one, Integral)}
-        return Asked(wanted.contacts, kept, wanted.begin, massless(self.task.system))
+        return Context(wanted.contacts, kept, wanted.begin, massless(self.task.system))
 
     # ---------------------------------------------------------------------------------------------------------- values
 
@@ -72,7 +72,7 @@ class Exact:
 
     # ----------------------------------------------------------------------------------------------------- derivatives
 
-    def gradient(self, x: Array) -> Found:
+    def gradient(self, x: Array) -> GradientValues:
         """Values and derivatives at a point, NaN for one that does not exist; NoGradient where there is none at all."""
         found = self._found(x)
         if found.matrix.size and np.all(np.isnan(found.matrix)):
@@ -88,11 +88,11 @@ class Exact:
             [one.matrix for one in found]
         ).reshape(shape)
 
-    def _found_or_none(self, x: Array) -> Found:
+    def _found_or_none(self, x: Array) -> GradientValues:
         try:
             return self._found(x)
         except NoGradient:
-            return Found(self._values(x[None])[0], np.full((len(self.task.labels), len(x)), np.nan))
+            return GradientValues(self._values(x[None])[0], np.full((len(self.task.labels), len(x)), np.nan))
 
     def product(self, x: Array, weights: Array) -> tuple[Array, Array]:
         """Values at a point, and the derivatives of the weighted sum of those whose weight is not zero.
@@ -127,7 +127,7 @@ class Exact:
 
     # ---------------------------------------------------------------------------------------------------- at one point
 
-    def _found(self, x: Array) -> Found:
+    def _found(self, x: Array) -> GradientValues:
         """Values and derivatives at a point, NaN and a problem for each that does not exist.
 
         NoGradient where the run stops early.
@@ -140,14 +140,14 @@ class Exact:
 
     def _settled(
         self, x: Array, beside: Beside, known: list[Line], doubts: list[Doubt], notes: tuple[str, ...]
-    ) -> Found:
+    ) -> GradientValues:
         values, matrix = np.array([one.value for one in known]), np.array([one.left for one in known])
         if not doubts and all(one.left is one.right for one in known) and np.all(np.isfinite(matrix)):
-            return Found(values, matrix, notes)
+            return GradientValues(values, matrix, notes)
         settling = Settling.of(self.task, x, self._sizes(x), known, doubts)
         settling.settle(beside)
         matrix = settling.matrix()
-        return Found(values, matrix, notes, tuple(settling.problems(matrix)))
+        return GradientValues(values, matrix, notes, tuple(settling.problems(matrix)))
 
     def _known(self, x: Array) -> tuple[list[Line], list[Doubt], tuple[str, ...]]:
         """What a run at a point says, and what is in doubt; Bends where a number is at a kink of the driveline."""
@@ -179,12 +179,12 @@ class Exact:
         values = zip(self.task.labels, self._values(x[None])[0].tolist(), strict=True)
         return [Line(name, value, 0.0, none, none, self.task.t_end) for name, value in values]
 
-    def lines(self, point: Point) -> tuple[Run, list[Line]]:
+    def lines(self, point: RunPoint) -> tuple[Run, list[Line]]:
         """A run, and what is asked of it with derivatives as they are."""
         run, outputs = self._refined(point, len(self.task.labels)), self.task.outputs
         return run, lines(run, outputs, self.task.labels, self._asked, self._sizes(point.x))
 
-    def _refined(self, point: Point, results: int) -> Run:
+    def _refined(self, point: RunPoint, results: int) -> Run:
         """A run with rows on both sides of where signals of extremes bend."""
         run, plain = self._run(point, results), self.runs.plain
         if plain.sharing is None or not len(run.primal.steps):
@@ -196,7 +196,7 @@ class Exact:
         grid = np.unique(np.concatenate([self.runs.wanted.grid, steps.times.ravel()]))
         return self._run(point._replace(steps=steps, grid=grid), results)
 
-    def _run(self, point: Point, results: int) -> Run:
+    def _run(self, point: RunPoint, results: int) -> Run:
         """A run, followed back where results are few and numbers many."""
         run = self.runs.taped(point) if self._is_followed_back(point.x, results) else self.runs.forward(point)
         # of events at one instant it is to be known how they move
@@ -207,7 +207,7 @@ class Exact:
         """Whether following a run back costs less than carrying derivatives along."""
         return len(x) >= FOLLOWED_FROM + FOLLOWED_FOR_EACH * results
 
-    def _doubts(self, point: Point, run: Run, found: list[Line]) -> list[Doubt]:
+    def _doubts(self, point: RunPoint, run: Run, found: list[Line]) -> list[Doubt]:
         return list(Doubts(self.runs, point, run, found, self._sizes(point.x)).found())
 
     def _beside(self, x: Array, number: int | None) -> list[Line] | None:

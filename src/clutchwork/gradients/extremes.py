@@ -38,7 +38,7 @@ WIDTH = 1 / 16
 PLACES = np.vander(np.arange(17) * WIDTH, PARTS + 1, increasing=True)
 
 
-class Found(NamedTuple):
+class Located(NamedTuple):
     """Where an extreme is: its value, its step, the place in it, and its sign in what is asked for."""
 
     value: float
@@ -48,10 +48,8 @@ class Found(NamedTuple):
     rough: float = 0.0  # last coefficient of the polynomial over the length of the step, of which slopes are off
     is_flat: bool = False  # all of the step is as large
     is_level: bool = False  # but for round-off
-    holds: tuple[bool, bool] = (
-        False,
-        False,
-    )  # whether all is as large from the begin of the step to it, and to its end
+    # whether all values from the begin of the step to it, and from it to the end, are as large
+    holds: tuple[bool, bool] = (False, False)
 
     @property
     def begins(self) -> int | None:
@@ -63,12 +61,12 @@ class Found(NamedTuple):
         return float(steps.begin[self.step] + self.share * steps.length[self.step])
 
 
-def candidates(one: Extreme, steps: Steps, values: Array) -> list[Found]:
+def candidates(one: Extreme, steps: Steps, values: Array) -> list[Located]:
     """The extreme, and those that are as large, those inside of steps first.
 
     Parameters: values of the signal, a line for the rows of each step.
     """
-    found, allowed = list[Found](), _allowed(values)
+    found, allowed = list[Located](), _allowed(values)
     sides = list(_near(one, steps, values))
     best = max((side.best for side in sides), default=0.0)
     for sign, coefficients, near, _, bound in sides:
@@ -89,7 +87,7 @@ def _allowed(values: Array) -> float:
     return EQUAL * float(np.abs(values).max(initial=0.0))
 
 
-class Side(NamedTuple):
+class CandidateSteps(NamedTuple):
     """Steps that may reach the extreme of one sign."""
 
     sign: float
@@ -99,7 +97,7 @@ class Side(NamedTuple):
     bound: float  # which no value exceeds
 
 
-def _near(one: Extreme, steps: Steps, values: Array) -> Iterator[Side]:
+def _near(one: Extreme, steps: Steps, values: Array) -> Iterator[CandidateSteps]:
     """For each sign of what is asked for the steps that may reach its largest value."""
     coefficients = np.einsum("nki,ni->nk", steps.basis, values)
     samples = coefficients @ PLACES.T
@@ -113,14 +111,14 @@ def _near(one: Extreme, steps: Steps, values: Array) -> Iterator[Side]:
             first = near[np.argsort(-upper[near], kind="stable")][:MOST_EQUAL]
             # of a plateau its ends are among those that are looked at
             near = np.unique([*first, near[0], near[-1]])
-        yield Side(sign, coefficients, near, best, float((upper + rise).max(initial=-np.inf)))
+        yield CandidateSteps(sign, coefficients, near, best, float((upper + rise).max(initial=-np.inf)))
 
 
-def _in_step(step: int, coefficients: Array, samples: Array, sign: float, allowed: float) -> list[Found]:
+def _in_step(step: int, coefficients: Array, samples: Array, sign: float, allowed: float) -> list[Located]:
     """The largest value of a polynomial, and where it is: at an end, where its slope is zero, or everywhere."""
     if (rise := float(np.ptp(samples))) <= allowed:
         level = rise <= LEVEL * allowed
-        return [Found(float(samples[end]), step, float(-end), sign, is_flat=True, is_level=level) for end in (0, -1)]
+        return [Located(float(samples[end]), step, float(-end), sign, is_flat=True, is_level=level) for end in (0, -1)]
     best = int(np.argmax(samples))
     share, slope = best / (len(samples) - 1), coefficients[1:] * np.arange(1, len(coefficients))
     bend = slope[1:] * np.arange(1, len(slope))
@@ -131,19 +129,19 @@ def _in_step(step: int, coefficients: Array, samples: Array, sign: float, allowe
     value = float(polyval(share, coefficients))
     # at an end it still rises, or there is no better place inside
     if value <= samples[best]:
-        return [Found(float(samples[best]), step, best * WIDTH, sign)]
+        return [Located(float(samples[best]), step, best * WIDTH, sign)]
     low_enough = samples < value - allowed
     before, behind = low_enough[: int(share / WIDTH) + 1], low_enough[int(share / WIDTH) + 1 :]
-    return [Found(value, step, share, sign, holds=(not before.any(), not behind.any()))]
+    return [Located(value, step, share, sign, holds=(not before.any(), not behind.any()))]
 
 
-def apart(primal: Primal, found: list[Found]) -> list[Found]:
+def apart(primal: Primal, found: list[Located]) -> list[Located]:
     """Without those that are another side of one extreme: at one instant, or on steps that go on smoothly.
 
     Of both sides of an instant that one stays whose polynomial is the smoother one, of a plateau and what leads to it
     the plateau.
     """
-    kept, kinds = list[Found](), primal.between[0]
+    kept, kinds = list[Located](), primal.between[0]
     for one in sorted(_without_slopes(found, kinds), key=lambda one: (one.begins is not None, one.rough)):
         near = [other for other in kept if abs(other.step - one.step) <= 1 and other.sign == one.sign]
         if (one.is_flat and all(other.is_flat for other in near)) or all(
@@ -156,7 +154,7 @@ def apart(primal: Primal, found: list[Found]) -> list[Found]:
     return kept
 
 
-def _without_slopes(found: list[Found], kinds: Places) -> list[Found]:
+def _without_slopes(found: list[Located], kinds: Places) -> list[Located]:
     """Without those that lead to a plateau, which a law or a signal makes from one instant on."""
     left = [one for one in found if not one.is_level]
     ends = {(one.sign, one.step, way) for one in found if one.is_level for way in (-1, 1)}
@@ -169,7 +167,7 @@ def _without_slopes(found: list[Found], kinds: Places) -> list[Found]:
         left = [one for one in left if one not in gone]
 
 
-def _leads_to(one: Found, end: tuple[float, int, int], kinds: Places) -> bool:
+def _leads_to(one: Located, end: tuple[float, int, int], kinds: Places) -> bool:
     """Whether it is as large up to the step of a plateau beside it; of what was joined to it by any way."""
     sign, step, way = end
     if one.sign != sign or abs(one.step - step) != 1 or (way != 0 and kinds[max(one.step, step)] == SMOOTH):
@@ -178,18 +176,18 @@ def _leads_to(one: Found, end: tuple[float, int, int], kinds: Places) -> bool:
     return one.is_flat or one.share == place or one.holds[place]
 
 
-def value(one: Extreme, found: list[Found]) -> float:
+def value(one: Extreme, found: list[Located]) -> float:
     """The extreme itself."""
     return float("nan") if not found else -found[0].value if one.kind == "minimum" else found[0].value
 
 
-def kinks(primal: Primal, found: list[Found]) -> tuple[float, ...]:
+def kinks(primal: Primal, found: list[Located]) -> tuple[float, ...]:
     """Instants of extremes at which knots meet or move at an end of the run [s]."""
     there = {one.begins for one in found}
     return tuple(time for time, place in primal.meets if place in there)
 
 
-def add_extreme(primal: Primal, one: Extreme, found: Found, into: Functional) -> None:
+def add_extreme(primal: Primal, one: Extreme, found: Located, into: Functional) -> None:
     """How an extreme changes: the signal at its instant, and that instant where it is that of an event."""
     steps, sign = primal.steps, 1.0 if one.kind == "minimum" else found.sign
     end, whole = found.begins, [(found.step, sign * steps.at(found.step, found.share))]

@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from clutchwork.assembly.wiring import HOUSING, wiring
-from clutchwork.base.kept import kept
+from clutchwork.base.memoize import memoize
 from clutchwork.declare.layout import CAUSES, EVENT
 from clutchwork.results.forms import LOCKED
 
@@ -152,7 +152,7 @@ def _near(times: Array, others: Array) -> NDArray[np.bool_]:
     return found
 
 
-@kept
+@memoize
 def moving_together(system: System) -> NDArray[np.int64]:
     """For each contact the part of the driveline that it is in: shafts that elements, contacts or gears join."""
     known = wiring(system)

@@ -8,7 +8,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from clutchwork.gradients.measures import Asked, Measure, measures
+from clutchwork.gradients.measures import Context, Measure, measures
 from clutchwork.gradients.primal import Primal
 from clutchwork.gradients.runs import Run
 from clutchwork.gradients.traces import trace
@@ -25,7 +25,7 @@ NOWHERE, NONE = np.zeros(0, dtype=np.intp), np.zeros(0)
 
 
 class Line(NamedTuple):
-    """A value of a run: NaN where there is none; its derivatives where a number grows and where it gets less."""
+    """A value of a run, NaN where there is none, and its row of the Jacobian for growing and for falling numbers."""
 
     name: str
     value: float
@@ -40,7 +40,7 @@ class Line(NamedTuple):
     several: str = ""  # why both sides differ
 
 
-def lines(run: Run, outputs: Mapping[str, Output], labels: Sequence[str], asked: Asked, sizes: Array) -> list[Line]:
+def lines(run: Run, outputs: Mapping[str, Output], labels: Sequence[str], asked: Context, sizes: Array) -> list[Line]:
     """All that is asked for, in order; of signals at instants all rows at once where a run carries derivatives along.
 
     Parameters: sizes, of the numbers.

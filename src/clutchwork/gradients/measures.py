@@ -35,7 +35,7 @@ class Measure(NamedTuple):
     missed: tuple[tuple[Functional, float], ...] = ()  # what moves, and by how much its share in the value is not known
 
 
-class Asked(NamedTuple):
+class Context(NamedTuple):
     """What outputs need to know of a System."""
 
     contacts: tuple[str, ...]
@@ -44,7 +44,7 @@ class Asked(NamedTuple):
     massless: frozenset[str] = frozenset()  # accelerations of shafts without inertia
 
 
-def measures(primal: Primal, one: Output, asked: Asked) -> Iterator[Measure]:
+def measures(primal: Primal, one: Output, asked: Context) -> Iterator[Measure]:
     """All of an output, in order."""
     match one:
         case AtEnd(signal):
@@ -84,7 +84,7 @@ def number_of(events: Array, one: When, contacts: tuple[str, ...]) -> int:
     return int(found[place]) if 0 <= place < len(found) else -1
 
 
-def _when(primal: Primal, one: When, asked: Asked) -> Measure:
+def _when(primal: Primal, one: When, asked: Context) -> Measure:
     number = number_of(primal.events, one, asked.contacts)
     if number < 0:
         return Measure(float("nan"), (), primal.t_end)

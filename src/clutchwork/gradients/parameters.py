@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 from clutchwork.assembly.changes import UNKNOWN_SOURCE
 from clutchwork.base.classes import dataclass
 from clutchwork.base.errors import ModelError, UseError, advised
-from clutchwork.base.shown import shown
+from clutchwork.base.quote import quote
 from clutchwork.declare.node import Law, Signal
 from clutchwork.model.changes import Owners, Target, changeable, field_of, named, target, targets_of, unit_of
 
@@ -31,7 +31,7 @@ ENTRY = re.compile(r"(.+)\.(values|times|arguments)((?:\[\d+\])*|\[\d*:\d*\])")
 
 
 @dataclass(frozen=True)
-class Parameter:
+class Tunable:
     """One number."""
 
     name: str
@@ -49,7 +49,7 @@ class Unfit(Exception):  # noqa: N818, it is caught where it is raised
     """Why a name means no number to differentiate by."""
 
 
-def parameters(system: System, by: Any) -> tuple[Parameter, ...]:
+def parameters(system: System, by: Any) -> tuple[Tunable, ...]:
     """The numbers that names mean, in order; UseError names all that cannot be differentiated by.
 
     Parameters: by, a name or several, as in `System.changed`; of a table its ordinates by "c1.pressure.values", one of
@@ -60,8 +60,8 @@ def parameters(system: System, by: Any) -> tuple[Parameter, ...]:
         raise ModelError([UNKNOWN_SOURCE])
     listed = [by] if isinstance(by, str) else list(by) if isinstance(by, Iterable) else []
     if not listed:
-        raise UseError("gradient", [f"by is {shown(by)}: name numbers, such as by=['c1.gain', 'engine.inertia']"])
-    owners, found, problems = named(system.source), dict[str, Parameter](), list[str]()
+        raise UseError("gradient", [f"by is {quote(by)}: name numbers, such as by=['c1.gain', 'engine.inertia']"])
+    owners, found, problems = named(system.source), dict[str, Tunable](), list[str]()
     for name in listed:
         try:
             found |= {one.name: one for one in _meant(system.source, owners, name)}
@@ -72,7 +72,7 @@ def parameters(system: System, by: Any) -> tuple[Parameter, ...]:
     return tuple(found.values())
 
 
-def _meant(model: Model, owners: Owners, name: Any) -> list[Parameter]:
+def _meant(model: Model, owners: Owners, name: Any) -> list[Tunable]:
     """The numbers of a name."""
     aim = target(owners, name)
     if aim is not None:
@@ -92,7 +92,7 @@ def _meant(model: Model, owners: Owners, name: Any) -> list[Parameter]:
     return chosen
 
 
-def _range(found: list[Parameter], given: str, name: str) -> list[Parameter]:
+def _range(found: list[Tunable], given: str, name: str) -> list[Tunable]:
     """Entries from one to another, both with them."""
     begin, end = given[1:-1].split(":")
     first, last = int(begin or 1), int(end or len(found))
@@ -101,7 +101,7 @@ def _range(found: list[Parameter], given: str, name: str) -> list[Parameter]:
     return found[first - 1 : last]
 
 
-def _number(aim: Target, name: str) -> Parameter:
+def _number(aim: Target, name: str) -> Tunable:
     value, spec = field_of(aim)
     if spec.flag or spec.choices or spec.whole or spec.fixed:
         kind = "whole number" if spec.whole or spec.fixed else "choice"
@@ -114,7 +114,7 @@ def _number(aim: Target, name: str) -> Parameter:
     if spec.what == "option" and aim.path[-1] == "tolerance" and not start:
         # contacts lock at the exact zero of their slip, which no value beside it does
         raise Unfit(f"{name} is 0, the exact zero of the slip, beside which there is another rule; give it a value")
-    return Parameter(name, name, (), unit_of(aim), start, abs(start) or 1.0, *_bounds(spec))
+    return Tunable(name, name, (), unit_of(aim), start, abs(start) or 1.0, *_bounds(spec))
 
 
 def _bounds(*found: Spec) -> tuple[float, float]:
@@ -137,10 +137,10 @@ def _inside(value: Any, name: str) -> str:
         return advised(f"is a {kind}", f"take {inside}")
     if hasattr(value, "__len__") and not isinstance(value, str):
         return advised("is a table", f"take {name}.values or {name}.values[1]")
-    return advised(f"is {shown(value)}, which is not a number", "give it a number in the driveline")
+    return advised(f"is {quote(value)}, which is not a number", "give it a number in the driveline")
 
 
-def _entries(table: Target, name: str, which: str) -> Iterator[Parameter]:
+def _entries(table: Target, name: str, which: str) -> Iterator[Tunable]:
     """Ordinates or abscissae of a table, or the numbers of a list."""
     field, (value, spec) = name, field_of(table)
     declared = [spec]
@@ -149,7 +149,7 @@ def _entries(table: Target, name: str, which: str) -> Iterator[Parameter]:
         value, spec = field_of(table)
         declared.append(spec)
     if spec.what not in ("curve", "numbers") or not hasattr(value, "__len__"):
-        raise Unfit(f"{name} is {shown(value)}, which is not a table; take {name} itself")
+        raise Unfit(f"{name} is {quote(value)}, which is not a table; take {name} itself")
     abscissae = "" if spec.what == "numbers" else "times" if spec.unit_x == "s" else "arguments"
     if which not in ("values", abscissae):
         raise Unfit(f"{name} has no {which}; take {name}.values{abscissae and f' or {name}.{abscissae}'}")
@@ -166,7 +166,7 @@ def _entries(table: Target, name: str, which: str) -> Iterator[Parameter]:
     bounds = _bounds(*declared) if which == "values" else (-inf, inf)
     reach, scale = float(np.min(gaps, initial=inf)), max(abs(one) for _, _, one in found) or 1.0
     for words, places, one in found:
-        yield Parameter(f"{name}.{which}{words}", field, places, unit, one, scale, *bounds, reach)
+        yield Tunable(f"{name}.{which}{words}", field, places, unit, one, scale, *bounds, reach)
 
 
 def _knots(points: Any) -> Iterator[tuple[str, tuple[tuple[int, ...], ...], float]]:
@@ -189,7 +189,7 @@ def _words(place: Sequence[int]) -> str:
     return "".join(f"[{number + 1}]" for number in place)
 
 
-def changes(system: System, chosen: Sequence[Parameter], x: Array) -> dict[str, Any]:
+def changes(system: System, chosen: Sequence[Tunable], x: Array) -> dict[str, Any]:
     """What `System.changed` is given for the values of parameters."""
     owners = named(system.source) if system.source else Owners()
     made = dict[str, Any]()

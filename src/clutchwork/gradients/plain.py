@@ -17,7 +17,7 @@ from clutchwork.gradients.measures import number_of
 from clutchwork.gradients.refined import Sharing, refined
 from clutchwork.gradients.steps import NO_STEPS, Steps
 from clutchwork.results.forms import all_reads
-from clutchwork.sweeps.batch import Wanted
+from clutchwork.sweeps.batch import CoreOutputs
 from clutchwork.sweeps.outputs import AtEnd, AtTimes, Extreme, Integral, SquaredJerk, When
 from clutchwork.sweeps.parts import PARTS, squared_jerk
 
@@ -46,10 +46,10 @@ class Run(NamedTuple):
 
 
 @dataclass(frozen=True, eq=False)
-class Plain:
+class PlainRuns:
     """Runs without derivatives, and outputs of them."""
 
-    wanted: Wanted
+    wanted: CoreOutputs
     options: Mapping[str, float]
     threads: int
     sharing: Sharing | None = None  # contacts whose torques may bend inside of steps

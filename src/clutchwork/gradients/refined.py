@@ -91,7 +91,7 @@ def _rough(one: Extreme, steps: Steps, values: Array, may_bend: Mask) -> Iterato
 
 
 def _places(steps: Steps, values: Array, step: int) -> Iterator[float]:
-    """Where a step is to be cut: where the polynomials of its neighbours meet in it, else into equal parts."""
+    """Instants that divide a step: where the polynomials of its neighbours intersect, else equal parts."""
     meeting = _meeting(steps, values, step)
     if meeting is None:
         yield from np.arange(1, CUTS) / CUTS

@@ -13,20 +13,20 @@ from clutchwork.assembly.wiring import wiring
 from clutchwork.base.classes import dataclass
 from clutchwork.declare.core import derivatives
 from clutchwork.declare.layout import DONE, INTERRUPTED
-from clutchwork.gradients.chart import Chart, Slopes
 from clutchwork.gradients.functional import Functional
 from clutchwork.gradients.knots import knots
-from clutchwork.gradients.plain import Detail, Plain
+from clutchwork.gradients.plain import Detail, PlainRuns
 from clutchwork.gradients.primal import Knots, Primal
 from clutchwork.gradients.refined import Sharing
 from clutchwork.gradients.signals_at import SignalsAt
 from clutchwork.gradients.steps import NO_STEPS, Steps
-from clutchwork.gradients.task import Task
+from clutchwork.gradients.task import GradientTask
+from clutchwork.gradients.word_map import Chart, Slopes
 from clutchwork.gradients.words import Words
 from clutchwork.results.forms import all_reads
 from clutchwork.results.gradient import NoGradient
 from clutchwork.run.simulation import told
-from clutchwork.sweeps.batch import Wanted
+from clutchwork.sweeps.batch import CoreOutputs
 
 Array = NDArray[np.float64]
 
@@ -37,7 +37,7 @@ INTEGRALS = ("angle", "element_work", "contact_work", "prescribed_work", "supply
 NO_TANGENTS = np.zeros((0, 0, 0))
 
 
-class Point(NamedTuple):
+class RunPoint(NamedTuple):
     """A point with what is known of its run before it is differentiated."""
 
     x: Array
@@ -71,7 +71,7 @@ class Run(NamedTuple):
 class Runs:
     """Runs of a driveline with other numbers."""
 
-    task: Task
+    task: GradientTask
 
     @cached_property
     def words(self) -> Words:
@@ -79,9 +79,9 @@ class Runs:
         return Words(self.task.system, tuple(self.task.parameters))
 
     @cached_property
-    def wanted(self) -> Wanted:
+    def wanted(self) -> CoreOutputs:
         """What is asked of each run."""
-        return Wanted.of(self.task.system, self.task.options, self.task.outputs, self.task.t_end)
+        return CoreOutputs.of(self.task.system, self.task.options, self.task.outputs, self.task.t_end)
 
     @cached_property
     def signals(self) -> SignalsAt:
@@ -94,25 +94,25 @@ class Runs:
         return self.task.options.changed({"method": "rodas5p"}).core_options()
 
     @cached_property
-    def plain(self) -> Plain:
+    def plain(self) -> PlainRuns:
         """Runs without derivatives."""
-        return Plain(self.wanted, self._options, self.task.threads, Sharing.of(self.task.system))
+        return PlainRuns(self.wanted, self._options, self.task.threads, Sharing.of(self.task.system))
 
     # ------------------------------------------------------------------------------------------------- with derivatives
 
-    def point(self, x: Array) -> Point:
+    def point(self, x: Array) -> RunPoint:
         """What a run with derivatives needs; NoGradient where a run stops early."""
         chart, words = self.words.at(x)
         slopes = chart.slopes(x)
         moving = knots(chart, words, slopes, self.wanted.begin, self.wanted.t_end)
-        point = Point(x, chart, words, slopes, moving, NO_STEPS, np.zeros(0), {}, self.wanted.grid, ())
+        point = RunPoint(x, chart, words, slopes, moving, NO_STEPS, np.zeros(0), {}, self.wanted.grid, ())
         if not self.plain.in_steps:
             return point
         run, steps, jerks = self.plain.with_jerks(point.system, self.signals.at(x))
         self._refuse_stopped(run.status, run.detail)
         return self._with_grid(point._replace(steps=steps.long().inside(), events=run.events[:, 0], jerks=jerks))
 
-    def forward(self, point: Point) -> Run:
+    def forward(self, point: RunPoint) -> Run:
         """A run with derivatives by all numbers."""
         places, seeds = point.slopes.places.astype(np.int64), point.slopes.matrix
         status, _, rows, row_tangents, events, event_tangents, grazes, fault = derivatives().tangents(
@@ -126,7 +126,7 @@ class Runs:
         primal = self._primal(point, rows, events, grazes)
         return Run(primal, slope, is_forward=True, notes=point.notes, tangents=row_tangents)
 
-    def taped(self, point: Point) -> Run:
+    def taped(self, point: RunPoint) -> Run:
         """A run that is followed back from each result; forward where there is no memory for it."""
         places = point.slopes.places.astype(np.int64)
         for size in TAPES:
@@ -144,7 +144,7 @@ class Runs:
         slope = partial(_back, tape, point.slopes, primal.rows.shape, len(events))
         return Run(primal, slope, is_forward=False, notes=point.notes)
 
-    def _how(self, point: Point) -> tuple[Any, ...]:
+    def _how(self, point: RunPoint) -> tuple[Any, ...]:
         """Instants, options and sizes of both kinds of runs with derivatives."""
         options = list(self._options.items())
         return point.grid, self.wanted.t_end, options, wiring(self.task.system).row_size, self._has_work
@@ -156,10 +156,10 @@ class Runs:
         integrals = {place for part in INTEGRALS for place in range(columns[part].start, columns[part].stop)}
         return not integrals.isdisjoint(all_reads(self.signals.plain.values()))
 
-    def _with_grid(self, point: Point) -> Point:
+    def _with_grid(self, point: RunPoint) -> RunPoint:
         return point._replace(grid=np.unique(np.concatenate([self.wanted.grid, point.steps.times.ravel()])))
 
-    def _aligned(self, point: Point, events: Array) -> Point | None:
+    def _aligned(self, point: RunPoint, events: Array) -> RunPoint | None:
         """The point with other instants of events, where they are too far from those that were expected."""
         if not len(point.steps) or len(events) != len(point.events):
             return None
@@ -169,7 +169,7 @@ class Runs:
             return None
         return self._with_grid(point._replace(steps=point.steps.moved(point.events, events), events=events))
 
-    def _primal(self, point: Point, rows: Array, events: Array, grazes: Array) -> Primal:
+    def _primal(self, point: RunPoint, rows: Array, events: Array, grazes: Array) -> Primal:
         return Primal(
             times=point.grid,
             rows=rows,

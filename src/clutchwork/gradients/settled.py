@@ -13,7 +13,7 @@ from clutchwork.base.classes import dataclass
 from clutchwork.gradients.bends import spread
 from clutchwork.gradients.doubts import Doubt
 from clutchwork.gradients.lines import Line
-from clutchwork.gradients.task import Task
+from clutchwork.gradients.task import GradientTask
 
 Array = NDArray[np.float64]
 Mask = NDArray[np.bool_]
@@ -41,7 +41,7 @@ class Settling:
     They start as those of the run at the point, and become those beside it where they are in doubt.
     """
 
-    task: Task
+    task: GradientTask
     x: Array
     sizes: Array  # of the numbers
     lines: Sequence[Line]
@@ -50,7 +50,7 @@ class Settling:
     one_way: Mask  # numbers that are in doubt for kinks alone that do not depend on the others
 
     @classmethod
-    def of(cls, task: Task, x: Array, sizes: Array, lines: Sequence[Line], doubts: Sequence[Doubt]) -> Settling:
+    def of(cls, task: GradientTask, x: Array, sizes: Array, lines: Sequence[Line], doubts: Sequence[Doubt]) -> Settling:
         """Those of a run."""
         why, one_way = np.full((len(lines), len(x)), "", dtype=object), np.ones(len(x), dtype=bool)
         for doubt in reversed(doubts):

@@ -14,7 +14,7 @@ from clutchwork.assembly.wiring import wiring
 from clutchwork.base.classes import dataclass
 from clutchwork.base.errors import ModelError
 from clutchwork.gradients.discovery import PROBES
-from clutchwork.gradients.stencils import Bent, slope
+from clutchwork.gradients.finite_differences import Bent, slope
 from clutchwork.gradients.words import Words
 from clutchwork.results.channels import channels
 from clutchwork.results.forms import is_of_structure

@@ -11,13 +11,13 @@ from numpy.typing import NDArray
 
 from clutchwork.base.classes import dataclass
 from clutchwork.declare.node import Signal
-from clutchwork.gradients.parameters import Parameter
+from clutchwork.gradients.parameters import Tunable
 from clutchwork.model.changes import Target, field_of, named, target
 from clutchwork.signals.table import Table
 
 if TYPE_CHECKING:
     from clutchwork.assembly.system import System
-    from clutchwork.sweeps.words import Layout
+    from clutchwork.sweeps.system_words import SystemLayout
 
 Array = NDArray[np.float64]
 Places = NDArray[np.int64]
@@ -41,7 +41,7 @@ class TableWords:
 
     @classmethod
     def of(
-        cls, system: System, beside: System, layout: Layout, field: str, free: Sequence[tuple[int, Parameter]]
+        cls, system: System, beside: System, layout: SystemLayout, field: str, free: Sequence[tuple[int, Tunable]]
     ) -> TableWords | None:
         """The words of a table of a System; None where it is more than a signal of its own.
 

@@ -13,19 +13,19 @@ from clutchwork.base.classes import dataclass
 if TYPE_CHECKING:
     from clutchwork.assembly.system import System
     from clutchwork.declare.options import Options
-    from clutchwork.gradients.parameters import Parameter
+    from clutchwork.gradients.parameters import Tunable
     from clutchwork.sweeps.outputs import Output
 
 Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True, eq=False)
-class Task:
+class GradientTask:
     """What is differentiated: a System, its values by name, its numbers, and how it is run."""
 
     system: System
     outputs: Mapping[str, Output]
-    parameters: Sequence[Parameter]
+    parameters: Sequence[Tunable]
     t_end: float  # s
     options: Options
     threads: int
@@ -33,7 +33,7 @@ class Task:
     side: str | None = None  # left or right, where derivatives from both sides differ
 
 
-class Found(NamedTuple):
+class GradientValues(NamedTuple):
     """Values and derivatives at one point."""
 
     values: Array

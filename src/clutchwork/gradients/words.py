@@ -17,14 +17,14 @@ from numpy.typing import NDArray
 from clutchwork.assembly.changes import is_right, is_right_law, ruled
 from clutchwork.base.classes import dataclass
 from clutchwork.declare.node import Component, Law
-from clutchwork.gradients.chart import Chart, Slopes
-from clutchwork.gradients.packed import made, words_of
+from clutchwork.gradients.system_words import made, words_of
+from clutchwork.gradients.word_map import Chart, Slopes
 from clutchwork.model.changes import named, renewed, target
 from clutchwork.model.model import Model
 
 if TYPE_CHECKING:
     from clutchwork.assembly.system import System
-    from clutchwork.gradients.parameters import Parameter
+    from clutchwork.gradients.parameters import Tunable
 
 Array = NDArray[np.float64]
 
@@ -37,7 +37,7 @@ class Words:
     """The words of a System as functions of numbers."""
 
     system: System
-    parameters: tuple[Parameter, ...]
+    parameters: tuple[Tunable, ...]
     _charts: list[Chart] = field(default_factory=list, repr=False)
 
     def at(self, x: Array) -> tuple[Chart, Array]:

@@ -9,10 +9,10 @@ from typing import TYPE_CHECKING, Any, Unpack
 
 from clutchwork.base.errors import UseError
 from clutchwork.base.extras import need
-from clutchwork.base.shown import shown
+from clutchwork.base.quote import quote
 from clutchwork.declare import quantity
 from clutchwork.declare.calls import explained
-from clutchwork.declare.given import Wanted
+from clutchwork.declare.to_si import TargetUnit
 from clutchwork.learn.moment import Moment
 from clutchwork.learn.ranges import ranges
 from clutchwork.learn.variation import refuse_unfit, variation
@@ -64,13 +64,13 @@ def environment(
     what, bad_actions = ranges("actions", actions, True, partial(_given, system))
     seen, bad_observations = ranges("observations", observations, False, partial(_signal, system))
     varies, tried, bad_variation = variation(vary or {}, partial(_given, system))
-    times = {name: Wanted("s").number(value) for name, value in (("t_end", t_end), ("period", period))}
+    times = {name: TargetUnit("s").number(value) for name, value in (("t_end", t_end), ("period", period))}
     wrong = [*bad_actions, *bad_observations, *bad_variation]
     for name, value in times.items():
         if isinstance(value, bool) or not isinstance(value, int | float) or not 0.0 < value < inf:
-            wrong.append(f"{name} is {shown(value)}: give a time above 0, in s or with a unit")
+            wrong.append(f"{name} is {quote(value)}: give a time above 0, in s or with a unit")
     wrong += [
-        f"{name} is {shown(function)}: give a function of a Moment"
+        f"{name} is {quote(function)}: give a function of a Moment"
         for name, function in (("reward", reward), ("ends", ends))
         if not (callable(function) or (name == "ends" and function is None))
     ]
@@ -80,7 +80,7 @@ def environment(
     if start is not None and vary:
         wrong.append("vary needs a new start in every episode: give vary or start")
     if render_mode not in (None, "rgb_array"):
-        wrong.append(f'render_mode is {shown(render_mode)}: give "rgb_array" or None')
+        wrong.append(f'render_mode is {quote(render_mode)}: give "rgb_array" or None')
     if wrong:
         raise UseError("cw.environment", wrong)
     refuse_unfit(system, tried)

@@ -12,8 +12,8 @@ from numpy.typing import NDArray
 
 from clutchwork.assembly.system import System
 from clutchwork.base.errors import ClutchworkError, UseError
-from clutchwork.base.shown import shown
-from clutchwork.base.text import counted
+from clutchwork.base.plural import counted
+from clutchwork.base.quote import quote
 from clutchwork.learn.moment import Moment
 from clutchwork.learn.ranges import Ranges
 from clutchwork.learn.variation import Draw
@@ -103,13 +103,13 @@ class DrivelineEnv(Env[Observation, Observation]):
         names = self._actions.names
         if numbers.shape != (len(names),) or not np.all(np.isfinite(numbers)):
             wanted = f"give {counted(len(names), 'numbers')} from -1 to 1, for {', '.join(names)}"
-            raise UseError("env.step", [f"action is {shown(action)}: {wanted}"])
+            raise UseError("env.step", [f"action is {quote(action)}: {wanted}"])
         return numbers
 
     def _rewarded(self, moment: Moment) -> float:
         reward = self._reward(moment)
         if reward is None or not isfinite(reward):
-            raise ClutchworkError(f"the reward at {moment.time:.9g} s is {shown(reward)}: return a finite number")
+            raise ClutchworkError(f"the reward at {moment.time:.9g} s is {quote(reward)}: return a finite number")
         return float(reward)
 
     def _info(self, values: Mapping[str, Any]) -> dict[str, Any]:

@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from clutchwork.base.classes import dataclass
-from clutchwork.base.shown import shown
+from clutchwork.base.quote import quote
 from clutchwork.declare.quantity import QuantityError, has_unit
 
 Array = NDArray[np.float64]
@@ -64,10 +64,10 @@ def ranges(what: str, given: object, needed: bool, in_si: InSI) -> tuple[Ranges,
         given = dict.fromkeys(given)
     if not isinstance(given, Mapping) or not given:
         wanted = "a mapping from names to (low, high)" + ("" if needed else ", or names")
-        return Ranges((), np.empty(0), np.empty(0)), [f"{what} is {shown(given)}: give {wanted}"]
+        return Ranges((), np.empty(0), np.empty(0)), [f"{what} is {quote(given)}: give {wanted}"]
     given = {name: plain(bounds, partial(in_si, name)) for name, bounds in given.items()}
     wrong = [
-        f"{what} of {shown(name)} is {shown(bounds)}: {RANGE}"
+        f"{what} of {quote(name)} is {quote(bounds)}: {RANGE}"
         for name, bounds in given.items()
         if not (bounds is None and not needed) and not is_range(bounds)
     ]

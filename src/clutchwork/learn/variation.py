@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from clutchwork.base.shown import shown
+from clutchwork.base.quote import quote
 from clutchwork.learn.ranges import RANGE, InSI, is_range, plain
 
 if TYPE_CHECKING:
@@ -20,7 +20,7 @@ Draw = Callable[[np.random.Generator], Any]
 def variation(given: object, in_si: InSI) -> tuple[dict[str, Draw], list[dict[str, Any]], list[str]]:
     """How to draw each value, values to try on the model, and what is wrong with the way they are given."""
     if not isinstance(given, Mapping):
-        return {}, [], [f"vary is {shown(given)}: give a mapping from names to (low, high)"]
+        return {}, [], [f"vary is {quote(given)}: give a mapping from names to (low, high)"]
     made, tried, wrong = dict[str, Draw](), dict[str, list[Any]](), list[str]()
     for name, how in given.items():
         bounds = plain(how, partial(in_si, name)) if isinstance(how, tuple) else how
@@ -32,7 +32,7 @@ def variation(given: object, in_si: InSI) -> tuple[dict[str, Draw], list[dict[st
             made[name], tried[name] = partial(_one_of, how), how
         else:
             ways = f"{RANGE}; a list to choose from, or a function of a numpy Generator"
-            wrong.append(f"vary of {shown(name)} is {shown(how)}: {ways}")
+            wrong.append(f"vary of {quote(name)} is {quote(how)}: {ways}")
     most = max(map(len, tried.values()), default=0)
     # the ends of every range, and every value of a list
     rounds = [{name: values[min(number, len(values) - 1)] for name, values in tried.items()} for number in range(most)]

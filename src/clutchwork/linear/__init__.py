@@ -1,1 +1,1 @@
-"""Linear systems of drivelines, for control design and vibration: docs/theory/linearisation.md."""
+"""Linear systems of drivelines, for control design and vibration (docs/theory/linearisation.md)."""

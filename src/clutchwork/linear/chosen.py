@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 from clutchwork.assembly.wiring import wiring
 from clutchwork.base.classes import dataclass
 from clutchwork.base.errors import near
-from clutchwork.base.shown import shown
+from clutchwork.base.quote import quote
 from clutchwork.results.channels import ACCELERATION, channels
 from clutchwork.results.forms import Mode
 
@@ -20,7 +20,7 @@ WILD = frozenset("*?")
 
 
 @dataclass(frozen=True)
-class Given:
+class Excitation:
     """One input: a signal of the System, or the acceleration of a prescribed speed."""
 
     name: str
@@ -30,17 +30,17 @@ class Given:
     accelerates: bool = False  # its acceleration is given; else its value
 
 
-def possible_inputs(system: System) -> dict[str, Given]:
+def possible_inputs(system: System) -> dict[str, Excitation]:
     """Everything that can be an input, by name: all signals, then the accelerations of prescribed speeds."""
     motions = {int(number): place for place, number in enumerate(system.prescribed_input)}
     known = {
-        item.name: Given(item.name, item.unit, number, motions.get(number, -1))
+        item.name: Excitation(item.name, item.unit, number, motions.get(number, -1))
         for number, item in enumerate(system.inputs)
     }
     for number, place in motions.items():
         domain = next(n.domain for n in _ports(system.motions[place]))
         name = f"{system.motions[place].name}.acceleration"
-        known.setdefault(name, Given(name, ACCELERATION[domain], number, place, accelerates=True))
+        known.setdefault(name, Excitation(name, ACCELERATION[domain], number, place, accelerates=True))
     return known
 
 
@@ -51,7 +51,7 @@ def _ports(component: Any) -> list[Any]:
     return [node for node in nodes if not node.fixed] or nodes
 
 
-def chosen_inputs(system: System, wanted: Any, problems: list[str]) -> list[Given]:
+def chosen_inputs(system: System, wanted: Any, problems: list[str]) -> list[Excitation]:
     """The inputs that were asked for; by default all signals."""
     known, unused = possible_inputs(system), wiring(system).unused
     if wanted is None:
@@ -76,7 +76,7 @@ def chosen_inputs(system: System, wanted: Any, problems: list[str]) -> list[Give
 
 
 def chosen_outputs(system: System, wanted: Any, default: Iterable[str], problems: list[str]) -> list[str]:
-    """The outputs that were asked for; by default those given."""
+    """The selected outputs, or the default ones."""
     if wanted is None:
         return list(dict.fromkeys(default))
     known, columns = channels(system, True, True), wiring(system).columns["supply_power"]
@@ -136,24 +136,24 @@ def _matching(
     """
     asked = [wanted] if isinstance(wanted, str) else wanted
     if not isinstance(asked, Iterable) or isinstance(asked, bytes):
-        problems.append(f"{what} = {shown(wanted)}: must be a name, such as '*.speed', or a list of names")
+        problems.append(f"{what} = {quote(wanted)}: must be a name, such as '*.speed', or a list of names")
         return []
     names: dict[str, None] = {}
     for name in asked:
         if not isinstance(name, str):
-            problems.append(f"{what}: {shown(name)} is not a name; give names as strings, such as '*.speed'")
+            problems.append(f"{what}: {quote(name)} is not a name; give names as strings, such as '*.speed'")
         elif name in known or name in hidden:
             names[name] = None
         elif WILD & set(name):
             # brackets stand for themselves: they are part of names
             found = [other for other in known if fnmatchcase(other, name.replace("[", "[[]"))]
             if not found:
-                problems.append(f"{what}: no signal fits {shown(name)}; `{what}` may be {_some(known)}")
+                problems.append(f"{what}: no signal fits {quote(name)}; `{what}` may be {_some(known)}")
             names.update(dict.fromkeys(found))
         elif reason := unlike(name):
             problems.append(reason)
         else:
-            problems.append(f"{what}: no signal {shown(name)}{near(name, known, f'it may be {_some(known)}')}")
+            problems.append(f"{what}: no signal {quote(name)}{near(name, known, f'it may be {_some(known)}')}")
     return list(names)
 
 

@@ -13,19 +13,19 @@ from clutchwork.linear.own_states import apart, followers, own_states, wound_up
 from clutchwork.results.channels import ANGLE, PLACE, SPEED
 
 if TYPE_CHECKING:
-    from clutchwork.linear.chosen import Given
+    from clutchwork.linear.chosen import Excitation
     from clutchwork.linear.motion import Motion
 
 Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True, eq=False)
-class Columns:
+class StateColumns:
     """States in their order - speeds, own states, angles, prescribed speeds - then inputs."""
 
     names: tuple[tuple[str, str], ...]  # of the states, with units
     scale: Array  # what is shown of a state is scale * state
-    given: Sequence[Given]
+    given: Sequence[Excitation]
     speeds: NDArray[np.intp]  # places among the speeds that stay
     own: NDArray[np.intp]  # numbers among the states of the core
     nodes: NDArray[np.intp]  # nodes whose angles are states
@@ -39,7 +39,7 @@ class Columns:
         return len(self.names)
 
 
-def columns(motion: Motion, given: Sequence[Given], angles: Sequence[int], heats: Sequence[int]) -> Columns:
+def columns(motion: Motion, given: Sequence[Excitation], angles: Sequence[int], heats: Sequence[int]) -> StateColumns:
     """The columns for these inputs.
 
     Parameters: angles, nodes whose angle is wanted; heats, states of ambients that are wanted.
@@ -78,11 +78,11 @@ def columns(motion: Motion, given: Sequence[Given], angles: Sequence[int], heats
                 x[:, column] -= shift[:, one.motion]
     scale = np.ones(n)
     scale[len(speeds) : len(speeds) + len(own)] = [shown[k].scale for k in own]
-    return Columns(tuple(names), scale, given, speeds, own, nodes, driven, base, turning)
+    return StateColumns(tuple(names), scale, given, speeds, own, nodes, driven, base, turning)
 
 
 def _turned(
-    motion: Motion, given: Sequence[Given], angles: Sequence[int]
+    motion: Motion, given: Sequence[Excitation], angles: Sequence[int]
 ) -> tuple[Array, NDArray[np.intp], NDArray[np.intp], Array]:
     """Twists and wanted angles: their rates, the numbers of the twists, which of them stay, and all over those."""
     by_rate, by_state, by_signal, _ = motion.local.split(motion.local.rate)
@@ -96,7 +96,7 @@ def _turned(
 
 
 def _speed_names(
-    motion: Motion, given: Sequence[Given], speeds: NDArray[np.intp], shift: Array
+    motion: Motion, given: Sequence[Excitation], speeds: NDArray[np.intp], shift: Array
 ) -> list[tuple[str, str]]:
     """Names of the speeds that stay; one that a prescribed speed takes along by inertia is told apart."""
     moved = [one.motion for one in given if one.motion >= 0 and not one.accelerates]

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 
 from clutchwork.base import shell
 from clutchwork.declare.options import SIMULATION
-from clutchwork.declare.speech import words_of_files
+from clutchwork.declare.wording import words_of_files
 from clutchwork.run.flags import add_options, given_options
 
 if TYPE_CHECKING:

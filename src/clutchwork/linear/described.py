@@ -14,7 +14,7 @@ if TYPE_CHECKING:
 Array = NDArray[Any]
 
 
-class Described(Protocol):
+class LinearSystem(Protocol):
     """A linear system, such as a Linear."""
 
     @property

@@ -9,13 +9,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from clutchwork.base.classes import dataclass
-from clutchwork.linear.columns import Columns, columns
+from clutchwork.linear.columns import StateColumns, columns
 from clutchwork.linear.motion import Motion
 from clutchwork.linear.own_states import own_states
 from clutchwork.linear.shares import Holding, torque_change
 
 if TYPE_CHECKING:
-    from clutchwork.linear.chosen import Given
+    from clutchwork.linear.chosen import Excitation
 
 Array = NDArray[np.float64]
 
@@ -40,7 +40,7 @@ class Equations:
     row: Array  # one line for each number of the row
 
 
-def equations(motion: Motion, given: Sequence[Given], angles: Sequence[int], heats: Sequence[int]) -> Equations:
+def equations(motion: Motion, given: Sequence[Excitation], angles: Sequence[int], heats: Sequence[int]) -> Equations:
     """The equations for these inputs.
 
     Parameters: angles, nodes whose angle is wanted; heats, states of ambients that are wanted.
@@ -58,7 +58,7 @@ def equations(motion: Motion, given: Sequence[Given], angles: Sequence[int], hea
     return Equations(states, scale[:, None] * rates[:, :n] / scale, scale[:, None] * rates[:, n:], row)
 
 
-def _rates(motion: Motion, made: Columns, over: Array) -> tuple[Array, Array]:
+def _rates(motion: Motion, made: StateColumns, over: Array) -> tuple[Array, Array]:
     """Rates of the states over states and inputs, docs/theory/linearisation.md (7), and their values at the instant."""
     instant, local = motion.instant, motion.local
     kept, accelerations = made.speeds, motion.prescribed_accelerations
@@ -100,7 +100,7 @@ def _of_ties(motion: Motion) -> tuple[Array, Array]:
     return -turned - inertia @ slopes, -inertia @ (local.ratio_slope[:, -1] * ties.rate)
 
 
-def _row(motion: Motion, made: Columns, over: Array, rates: Array) -> Array:
+def _row(motion: Motion, made: StateColumns, over: Array, rates: Array) -> Array:
     """Derivatives of the output row over states, inputs and slopes of inputs: docs/theory/linearisation.md (9)."""
     system, local, n = motion.system, motion.local, made.n
     count = len(made.given)
@@ -153,7 +153,7 @@ def _holding(motion: Motion, base: Array) -> Holding:
     )
 
 
-def _values(motion: Motion, made: Columns) -> Array:
+def _values(motion: Motion, made: StateColumns) -> Array:
     """Values of the states at the instant, as they are shown."""
     instant, shown = motion.instant, own_states(motion.instant.wiring)
     names = [node.name for node in motion.system.nodes]

@@ -9,12 +9,12 @@ from typing import TYPE_CHECKING, Any
 from clutchwork.base.extras import need
 
 if TYPE_CHECKING:
-    from clutchwork.linear.described import Described
+    from clutchwork.linear.described import LinearSystem
     from clutchwork.linear.modes import NaturalMode
     from clutchwork.linear.quantity import Quantity
 
 
-def to_control(lin: Described) -> Any:
+def to_control(lin: LinearSystem) -> Any:
     """As a `control.StateSpace` with names of states, inputs and outputs."""
     control = need("control", "control", "to_control()")
     parts = {"states": lin.state_quantities, "inputs": lin.input_quantities, "outputs": lin.output_quantities}
@@ -27,13 +27,13 @@ def plain(name: str) -> str:
     return re.sub(r"\W", "_", name)
 
 
-def to_scipy(lin: Described) -> Any:
+def to_scipy(lin: LinearSystem) -> Any:
     """As a `scipy.signal.StateSpace`."""
     signal = need("scipy.signal", "fit", "to_scipy()")
     return signal.StateSpace(*lin.matrices)
 
 
-def to_dict(lin: Described) -> dict[str, Any]:
+def to_dict(lin: LinearSystem) -> dict[str, Any]:
     """As numbers, texts and lists."""
     return {
         "model": lin.model,

@@ -14,7 +14,7 @@ from clutchwork.assembly.system import System
 from clutchwork.assembly.wiring import Wiring, wiring
 from clutchwork.base.classes import dataclass
 from clutchwork.base.errors import UseError
-from clutchwork.base.shown import shown
+from clutchwork.base.quote import quote
 from clutchwork.declare.layout import MODES
 from clutchwork.declare.quantity import QuantityError, has_unit, in_si
 from clutchwork.linear.reached import options_of, reached, refuse_stopped, started, step_over
@@ -100,14 +100,14 @@ def _plain(at: Any) -> tuple[Any, list[str]]:
     try:
         return in_si(at, "s"), []
     except QuantityError as bad:
-        return at, [f"at = {shown(at)}: must be a time in s, zero or later ({bad})"]
+        return at, [f"at = {quote(at)}: must be a time in s, zero or later ({bad})"]
 
 
 def _problems(model: Any, at: Any) -> Iterator[str]:
     if isinstance(model, str | os.PathLike):
-        yield f"{shown(model)} is not a model; load a file with cw.Driveline.load({os.fspath(model)!r})"
+        yield f"{quote(model)} is not a model; load a file with cw.Driveline.load({os.fspath(model)!r})"
     elif not isinstance(model, System | Trajectory | Simulator) and not hasattr(model, "assemble"):
-        yield f"{shown(model)} is not a model; give a Driveline, a System, a Simulator, or a run with at=..."
+        yield f"{quote(model)} is not a model; give a Driveline, a System, a Simulator, or a run with at=..."
     if isinstance(model, Simulator):
         if at is not None:
             yield "at cannot be given with a Simulator, which is taken where it is; give sim.run for another time"
@@ -118,7 +118,7 @@ def _problems(model: Any, at: Any) -> Iterator[str]:
         if isinstance(model, Trajectory):
             yield "at is a saved state; give the model that it is of in place of the run"
     elif isinstance(at, bool) or not isinstance(at, int | float | np.number) or not math.isfinite(at) or at < 0.0:
-        yield f"at = {shown(at)}: must be a time in s, zero or later"
+        yield f"at = {quote(at)}: must be a time in s, zero or later"
     elif isinstance(model, Trajectory) and len(model) and at < model.options.t_start:
         yield f"at = {at:g} s is before the begin of the run at {model.options.t_start:g} s; give a later instant"
     elif isinstance(model, Trajectory) and len(model) and at > _end(model):

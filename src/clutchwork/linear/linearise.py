@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from clutchwork.base.errors import UseError
 from clutchwork.declare.calls import explained
-from clutchwork.linear.chosen import Given, chosen_inputs, chosen_outputs
+from clutchwork.linear.chosen import Excitation, chosen_inputs, chosen_outputs
 from clutchwork.linear.equations import equations
 from clutchwork.linear.instant import CALL, Instant, instant_of
 from clutchwork.linear.motion import Motion
@@ -67,7 +67,7 @@ def linearise(
     return _made(motion, given, names, left_out)
 
 
-def _made(motion: Motion, given: list[Given], names: list[str], left_out: list[str]) -> Linear:
+def _made(motion: Motion, given: list[Excitation], names: list[str], left_out: list[str]) -> Linear:
     """The result, unless an output needs the slope of an input."""
     instant, known = motion.instant, channels(motion.system, True, True)
     found = equations(motion, given, *_wanted(instant, names))
@@ -102,8 +102,8 @@ def _made(motion: Motion, given: list[Given], names: list[str], left_out: list[s
 
 
 def _free_inputs(
-    motion: Motion, given: list[Given], default: bool, problems: list[str], left_out: list[str]
-) -> list[Given]:
+    motion: Motion, given: list[Excitation], default: bool, problems: list[str], left_out: list[str]
+) -> list[Excitation]:
     """Inputs without prescribed speeds that locked contacts hold."""
     tied = {int(k) for k in np.flatnonzero(np.abs(motion.free.ties).max(axis=0, initial=0.0) > ROUND_OFF)}
     # a ratio that moves acts by its slope too
@@ -142,7 +142,7 @@ def _wanted(instant: Instant, names: Sequence[str]) -> tuple[list[int], list[int
     return angles, heats
 
 
-def _improper(names: Sequence[str], given: Sequence[Given], lines: Array, n: int) -> list[str]:
+def _improper(names: Sequence[str], given: Sequence[Excitation], lines: Array, n: int) -> list[str]:
     """Outputs that need the slope of an input, each with what to do."""
     found, m = [], len(given)
     for name, line in zip(names, lines, strict=True):

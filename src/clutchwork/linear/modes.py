@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from clutchwork.base import html
 from clutchwork.base.classes import dataclass
-from clutchwork.base.text import columns
+from clutchwork.base.plural import columns
 from clutchwork.declare.calls import explained_methods
 
 if TYPE_CHECKING:

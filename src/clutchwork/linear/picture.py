@@ -16,7 +16,7 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
-    from clutchwork.linear.described import Described
+    from clutchwork.linear.described import LinearSystem
     from clutchwork.linear.modes import NaturalMode
 
 STABLE, GROWING = COLOURS[0], COLOURS[1]
@@ -25,7 +25,7 @@ LEAST_HEIGHT = 62.0  # mm
 MOST_MODES, MOST_SHAFTS = 6, 24
 
 
-def picture(lin: Described, path: str | Path | None = None) -> Figure:
+def picture(lin: LinearSystem, path: str | Path | None = None) -> Figure:
     """Eigenvalues on the left, shapes of the slowest modes that swing on the right; written to `path` when given."""
     shapes = [mode for mode in lin.modes.swinging if mode.shape][:MOST_MODES]
     shapes = shapes or [mode for mode in lin.modes if mode.shape][:MOST_MODES]
@@ -43,7 +43,7 @@ def picture(lin: Described, path: str | Path | None = None) -> Figure:
     return figure
 
 
-def _eigenvalues(axes: Axes, lin: Described) -> None:
+def _eigenvalues(axes: Axes, lin: LinearSystem) -> None:
     """Real parts over frequencies; what is right of the line grows."""
     values = lin.eigenvalues
     colours = [GROWING if value.real > 0.0 else STABLE for value in values]

@@ -12,8 +12,8 @@ from numpy.typing import NDArray
 from clutchwork.base import html
 from clutchwork.base.classes import dataclass
 from clutchwork.base.errors import UseError
-from clutchwork.base.shown import shown
-from clutchwork.base.text import columns, counted
+from clutchwork.base.plural import columns, counted
+from clutchwork.base.quote import quote
 from clutchwork.declare.calls import explained, explained_methods
 from clutchwork.declare.layout import MODES
 from clutchwork.declare.quantity import QuantityError, has_unit, in_si
@@ -133,7 +133,7 @@ class Linear:
         except (TypeError, ValueError):
             asked = np.full(1, np.nan)
         if asked.ndim != 1 or not np.isfinite(asked).all():
-            given = f"frequencies = {shown(frequencies)}: must be finite numbers in Hz"
+            given = f"frequencies = {quote(frequencies)}: must be finite numbers in Hz"
             raise UseError("frequency_response", [given])
         made = np.empty((len(asked), *self.D.shape), dtype=complex)
         for place, frequency in enumerate(asked):
@@ -186,7 +186,7 @@ class Linear:
         sizes = (
             counted(len(part), name) for part, name in zip(self._parts, ("states", "inputs", "outputs"), strict=True)
         )
-        return f"<Linear {shown(self.model)} at {self.time:g} s: {', '.join(sizes)}>"
+        return f"<Linear {quote(self.model)} at {self.time:g} s: {', '.join(sizes)}>"
 
     @property
     def _parts(self) -> Sequence[Sequence[Quantity]]:

@@ -1,1 +1,1 @@
-"""A model and its mistakes: numbers, laws, heat, and the structure that follows from its gears."""
+"""A model, its mistakes, and the kinematics that follow from its gears."""

@@ -14,8 +14,7 @@ from typing import Any
 
 from clutchwork.base.errors import ModelError, Problem, near, nearest
 from clutchwork.base.frozen import Frozen
-from clutchwork.base.shown import shown
-from clutchwork.declare.given import Wanted, field_in_si, settled
+from clutchwork.base.quote import quote
 from clutchwork.declare.node import (
     Component,
     HeatFlow,
@@ -28,6 +27,7 @@ from clutchwork.declare.node import (
     is_reference,
 )
 from clutchwork.declare.schema import Spec, specs
+from clutchwork.declare.to_si import TargetUnit, field_in_si, settled
 from clutchwork.model.findings import findings
 from clutchwork.model.model import Model
 from clutchwork.model.problems import NODE_FIELDS
@@ -120,7 +120,7 @@ def in_si(aim: Target, value: Any) -> Any:
         spec = _spec(thing, name)
         if spec.what in SIGNALS:
             fits = settled(name, spec, type(thing), vars(thing))
-            driven = Wanted(fits.unit, fits.units)
+            driven = TargetUnit(fits.unit, fits.units)
         thing = getattr(thing, name)
     name = aim.path[-1]
     spec = _spec(thing, name)
@@ -210,7 +210,7 @@ def targets_of(model: Model, names: Iterable[str]) -> tuple[dict[str, Target], l
 
 
 def _unknown(model: Model, owners: Mapping[str, Any], name: object) -> Problem:
-    path = name if isinstance(name, str) else shown(name)
+    path = name if isinstance(name, str) else quote(name)
     owner, _, last = path.rpartition(".")
     thing = owners.get(owner)
     joined = [item.name for item, _ in specs(type(thing), *FIXED)] if isinstance(thing, Component) else []

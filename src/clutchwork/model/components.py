@@ -8,11 +8,11 @@ from numbers import Real
 from typing import Any
 
 from clutchwork.base.errors import Problem, near
-from clutchwork.base.shown import listed, shown
+from clutchwork.base.quote import listed, quote
 from clutchwork.declare.node import Component, Entry, Law, Node, ThermalNode
 from clutchwork.declare.ports import ports
 from clutchwork.declare.schema import REGISTRY, Role, specs
-from clutchwork.declare.speech import path_of
+from clutchwork.declare.wording import path_of
 from clutchwork.model.fields import is_sound, object_problems
 from clutchwork.model.numbers import At
 from clutchwork.model.thermal import Within
@@ -41,7 +41,7 @@ def type_problem(kind: Any, at: At) -> Problem:
     known = [name for role in (Role.CONTACT, Role.COMPOSITE) for name, cls in REGISTRY[role].items() if _joins_two(cls)]
     meant = near(kind, [*known, *REGISTRY[Role.TORQUE]])
     remedy = "" if meant else f"known types: {listed(known)}"
-    return at.inner("type").problem(f"is an unknown type{meant}", shown(kind), remedy)
+    return at.inner("type").problem(f"is an unknown type{meant}", quote(kind), remedy)
 
 
 def _joins_two(cls: Any) -> bool:
@@ -56,7 +56,7 @@ def _entry_problems(entry: Entry, owner: At) -> Iterator[Problem]:
     if entry.cls is None:
         yield type_problem(entry.kind, at)
     elif entry.made is None:
-        yield at.inner("type").problem(entry.fault[0], shown(entry.kind), entry.fault[1])
+        yield at.inner("type").problem(entry.fault[0], quote(entry.kind), entry.fault[1])
     else:
         known = [item.name for item, spec in specs(entry.cls) if spec.what != "port"]
         for key in entry.unknown:
@@ -135,7 +135,7 @@ def _one_shaft(moving: Mapping[str, Node], within: Within, at: At) -> Iterator[P
         first = seen.setdefault(node.name if within.holds(node) else id(node), name)
         if first != name:
             yield at.problem(
-                f"{first} and {name} are both attached to {shown(node.name)}", remedy="attach them to two shafts"
+                f"{first} and {name} are both attached to {quote(node.name)}", remedy="attach them to two shafts"
             )
             return
 
@@ -152,7 +152,7 @@ def connection_problems(component: Component, nodes: Mapping[int, Node], within:
             continue
         if any(node.name == other.name for other in nodes.values()) or not within.holds(node):
             found = near(node.name, [n.name for n in nodes.values() if n.name != node.name])
-            yield at.inner(name).problem("belongs to another driveline", shown(node.name), f"create it here{found}")
+            yield at.inner(name).problem("belongs to another driveline", quote(node.name), f"create it here{found}")
     if not moving:
         yield at.problem("is attached to the housing alone", remedy="attach a port to a shaft")
     # members of a planetary gear on one shaft lock it

@@ -9,14 +9,14 @@ from numbers import Real
 from typing import Any
 
 from clutchwork.base.errors import Problem, near
-from clutchwork.base.shown import shown
-from clutchwork.declare.given import settled
+from clutchwork.base.quote import quote
+from clutchwork.declare.expected_value import wanted
 from clutchwork.declare.node import Component, Domain, Law, Node, Signal, ThermalNode, is_reference
 from clutchwork.declare.quantity import has_unit, within
 from clutchwork.declare.schema import Inputs, Role, Spec, inputs, specs
-from clutchwork.declare.speech import kinds_of, say
+from clutchwork.declare.to_si import settled
 from clutchwork.declare.units import has_comma, split
-from clutchwork.declare.wanted import wanted
+from clutchwork.declare.wording import kinds_of, say
 from clutchwork.model.numbers import At as At
 from clutchwork.model.numbers import as_float, curve_problems, instead, is_right, list_problems
 from clutchwork.model.numbers import number_problems as number_problems
@@ -139,21 +139,21 @@ def _param(value: Any, spec: Spec, at: At) -> Iterator[Problem]:
     if spec.choices:
         if not isinstance(value, str) or value not in spec.choices:
             message = "is an unknown choice" + near(value, spec.choices)
-            yield at.problem(message, value=shown(value), remedy=f"choose one of {', '.join(spec.choices)}")
+            yield at.problem(message, value=quote(value), remedy=f"choose one of {', '.join(spec.choices)}")
     elif not spec.flag:
         yield from number_problems(value, spec, at)
     elif not isinstance(value, bool) and value not in (0, 1):
-        yield at.problem("must be true or false", value=shown(value), remedy=spec.doc)
+        yield at.problem("must be true or false", value=quote(value), remedy=spec.doc)
 
 
 def _port(value: Any, spec: Spec, at: At) -> Iterator[Problem]:
     if not isinstance(value, Node):
         in_python = "pass the object returned by d.shaft(...), d.mass(...) or d.housing"
         remedy = say("give the name of one", in_python)
-        yield at.problem("must be a shaft, a mass or the housing", value=shown(value), remedy=remedy)
+        yield at.problem("must be a shaft, a mass or the housing", value=quote(value), remedy=remedy)
     elif spec.domain and not value.fixed and value.domain is not Domain(spec.domain):
         wanted = "a shaft" if spec.domain == "rotation" else "a mass"
-        yield at.problem(f"must be {wanted}", value=shown(value.name), remedy=f"{spec.doc} is in {spec.domain}")
+        yield at.problem(f"must be {wanted}", value=quote(value.name), remedy=f"{spec.doc} is in {spec.domain}")
 
 
 def _thermal(value: Any, spec: Spec, at: At) -> Iterator[Problem]:
@@ -164,7 +164,7 @@ def _thermal(value: Any, spec: Spec, at: At) -> Iterator[Problem]:
 
 
 def _shown(value: Any) -> str:
-    return shown(value.name if isinstance(value, Node | Component) else value)
+    return quote(value.name if isinstance(value, Node | Component) else value)
 
 
 def signal_problems(value: Any, spec: Spec, at: At) -> Iterator[Problem]:
@@ -188,7 +188,7 @@ def signal_problems(value: Any, spec: Spec, at: At) -> Iterator[Problem]:
             remedy = say('write {type = "table", points = [[time, value], ...]}', "wrap it: cw.Table([...])")
         if callable(value):
             remedy = "a function is a controller: give cw.Sampled(function, period), with the period in s"
-        yield at.problem(f"must be a number{within(at.unit)} or a signal", value=shown(value), remedy=remedy)
+        yield at.problem(f"must be a number{within(at.unit)} or a signal", value=quote(value), remedy=remedy)
 
 
 def _grows(signal: Signal) -> bool:
@@ -205,7 +205,7 @@ def _never_presses(loads: Iterable[float], at: At) -> Iterator[Problem]:
             return
         least = min(least, load)
     if least < 0.0:
-        message, remedy = "never presses: a load below zero counts as zero", "give zero or a positive value"
+        message, remedy = "never presses the contact: a negative load counts as zero", "give zero or a positive value"
         yield at.problem(message, f"{least:g} {at.unit}".removesuffix(" 1"), remedy)
 
 
@@ -230,7 +230,7 @@ def _beyond_bounds(signal: Signal, spec: Spec, at: At) -> Iterator[Problem]:
 def _law(value: Any, _: Spec, at: At) -> Iterator[Problem]:
     if not isinstance(value, Law):
         remedy = f"give one of {kinds_of(Role.LAW)}"
-        yield at.problem("must be a friction law", value=shown(value), remedy=remedy)
+        yield at.problem("must be a friction law", value=quote(value), remedy=remedy)
         return
     yield from law_problems(value, at)
 
@@ -258,17 +258,17 @@ def _peak(law: Law, at: At) -> Iterator[Problem]:
 
 def _text(value: Any, spec: Spec, at: At) -> Iterator[Problem]:
     if not (value is None and spec.optional) and (not isinstance(value, str) or not value):
-        yield at.problem("must be a string", value=shown(value), remedy=spec.doc)
+        yield at.problem("must be a string", value=quote(value), remedy=spec.doc)
 
 
 def _function(value: Any, spec: Spec, at: At) -> Iterator[Problem]:
     if not callable(value):
-        yield at.problem("must be a Python function", value=shown(value), remedy=spec.doc)
+        yield at.problem("must be a Python function", value=quote(value), remedy=spec.doc)
 
 
 def _named(value: Any, spec: Spec, at: At) -> Iterator[Problem]:
     if not isinstance(value, Mapping):
-        yield at.problem(f"must be a table of numbers{within(at.unit)} by name", shown(value), 'write {"S1": 0.02}')
+        yield at.problem(f"must be a table of numbers{within(at.unit)} by name", quote(value), 'write {"S1": 0.02}')
         return
     for name, number in value.items():
         yield from number_problems(number, spec, at.inner(str(name), at.unit))
@@ -277,18 +277,18 @@ def _named(value: Any, spec: Spec, at: At) -> Iterator[Problem]:
 def _tables(value: Any, spec: Spec, at: At) -> Iterator[Problem]:
     """What is inside of the tables is looked at by what they describe."""
     if not isinstance(value, Mapping):
-        yield at.problem("must be a table", shown(value), f"give a table by name: {spec.doc}")
+        yield at.problem("must be a table", quote(value), f"give a table by name: {spec.doc}")
         return
     for name, table in value.items():
         if not isinstance(table, Mapping):
             remedy = say("write its fields below a head of its own", 'write {"type": "clutch", "gain": 1e-3}')
-            yield at.inner(str(name)).problem("must be a table", shown(table), remedy)
+            yield at.inner(str(name)).problem("must be a table", quote(table), remedy)
 
 
 def _data(value: Any, spec: Spec, at: At) -> Iterator[Problem]:
     """Whoever reads it says what is wrong with it."""
     if value is None or value == "":
-        yield at.problem("is missing", shown(value), spec.doc)
+        yield at.problem("is missing", quote(value), spec.doc)
 
 
 # what may be a plain number

@@ -7,7 +7,7 @@ from functools import cached_property
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 from clutchwork.base.classes import dataclass
-from clutchwork.declare.speech import of_files
+from clutchwork.declare.wording import of_files
 from clutchwork.model.kinematics import kinematics
 from clutchwork.model.loads import load_problems
 from clutchwork.model.parts import Parts, Sensor
@@ -50,7 +50,7 @@ class Findings(NamedTuple):
 
 
 class Kept(NamedTuple):
-    """Findings, and the content that they are of."""
+    """Cached findings and the model content they belong to."""
 
     findings: Findings
     things: tuple[Any, ...]
@@ -58,7 +58,7 @@ class Kept(NamedTuple):
     changeable: list[tuple[Any, Any]]
 
     def lasts(self) -> bool:
-        """Whether nobody changed a list inside of a thing."""
+        """True while the cached inputs are unchanged."""
         try:
             return all(_values(thing) == values for thing, values in self.changeable)
         except (RecursionError, TypeError):

@@ -9,9 +9,9 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from clutchwork.base.errors import Problem, near
-from clutchwork.base.shown import listed, shown
+from clutchwork.base.quote import listed, quote
 from clutchwork.declare.rational import MINUS, ONE, Echelon, Row, eliminate, plus, smallest
-from clutchwork.model import massless, transmissions
+from clutchwork.model import massless, variable_ratios
 from clutchwork.model.structure import Kinematics, Mechanism, RigidRow
 
 if TYPE_CHECKING:
@@ -45,7 +45,7 @@ def kinematics(
         made.loose = loose
     problems += [*unbalanced, *(_choice_problems(model, made, wanted) if sound else ())]
     problems += massless.problems(model, made, incomplete)
-    problems += transmissions.problems(model, made)
+    problems += variable_ratios.problems(model, made)
     made.notes += _redundant(rows, solved, echelon) + [
         f"{row.owner}: its springs act in series" for row in series.values()
     ]
@@ -56,7 +56,7 @@ def _wanted_places(model: Mechanism, wanted: Sequence[str]) -> tuple[list[Proble
     names = [node.name for node in model.nodes]
     unknown = [name for name in wanted if name not in names]
     problems = [
-        Problem("independent", "", "is not a shaft" + near(name, names), shown(name), f"choose from {listed(names)}")
+        Problem("independent", "", "is not a shaft" + near(name, names), quote(name), f"choose from {listed(names)}")
         for name in unknown
     ]
     return problems, [names.index(name) for name in wanted if name in names]
@@ -79,7 +79,7 @@ def _solve(model: Mechanism, echelon: Echelon) -> Kinematics:
     free = [node for node in range(len(model.nodes)) if node not in echelon.solved]
     heavy = {column for row, inertia in zip(speeds, model.inertia, strict=True) if inertia for column in row}
     made = Kinematics(speeds, free, set(free) - heavy)
-    made.followers = transmissions.followers(model, made)
+    made.followers = variable_ratios.followers(model, made)
     made.massless -= set(made.followers.values())
     return made
 
@@ -129,7 +129,7 @@ def _choice_problems(model: Mechanism, made: Kinematics, wanted: Sequence[str]) 
         if name not in free:
             others = [names[column] for column in made.speeds[names.index(name)] if column < len(names)]
             message = f"follows from {', '.join(others) or 'the prescribed speeds'}"
-            yield Problem("independent", "", message, shown(name), "remove it")
+            yield Problem("independent", "", message, quote(name), "remove it")
     missing = [name for name in free if name not in wanted]
     if missing:
         yield Problem("independent", "", f"misses {', '.join(missing)}", remedy=f"{len(free)} speeds are independent")

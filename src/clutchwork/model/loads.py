@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any
 from clutchwork.base.errors import Problem
 from clutchwork.declare.rational import MINUS, ONE, ZERO, Row, eliminate, plus, smallest
 from clutchwork.declare.schema import Role
-from clutchwork.declare.speech import path_of
+from clutchwork.declare.wording import path_of
 from clutchwork.model.structure import follows_load
 
 if TYPE_CHECKING:

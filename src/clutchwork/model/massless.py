@@ -8,11 +8,11 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 from clutchwork.base.errors import Problem
-from clutchwork.base.shown import shown
+from clutchwork.base.quote import quote
 from clutchwork.declare.node import Domain
 from clutchwork.declare.rational import ONE, ZERO, Row, eliminate, exact, plus
 from clutchwork.declare.schema import Role
-from clutchwork.declare.speech import path_of
+from clutchwork.declare.wording import path_of
 from clutchwork.model.structure import Kinematics, Mechanism, RigidRow
 
 if TYPE_CHECKING:
@@ -111,7 +111,7 @@ def problems(model: Mechanism, made: Kinematics, incomplete: frozenset[str]) -> 
         quantity, more = ("mass", "mass > 0 kg") if is_mass else ("inertia", "inertia > 0 kg m2")
         if speed >= len(model.nodes) - model.inner:
             # inside of a composite
-            more += f" where {shown(model.nodes[speed].name.partition('.')[0])} is written"
+            more += f" where {quote(model.nodes[speed].name.partition('.')[0])} is written"
         jumping = _names(_acting(model, made, {speed: ONE}), _needs_inertia)
         if jumping:
             message = f"is missing at {jumping}, whose torque jumps"

@@ -8,7 +8,7 @@ from numbers import Real
 from typing import Any, NamedTuple
 
 from clutchwork.base.errors import Problem
-from clutchwork.base.shown import listed, shown
+from clutchwork.base.quote import listed, quote
 from clutchwork.declare.quantity import PLAIN, QuantityError, has_unit, in_si, within
 from clutchwork.declare.schema import Spec
 from clutchwork.declare.units import Scale
@@ -43,11 +43,11 @@ def number_problems(value: Any, spec: Spec, at: At) -> Iterator[Problem]:
         yield unit_problem(value, spec, at)
         return
     if isinstance(value, bool) or not isinstance(value, Real):
-        yield at.problem(f"must be a number{within(at.unit)}", value=shown(value), remedy="write a plain number")
+        yield at.problem(f"must be a number{within(at.unit)}", value=quote(value), remedy="write a plain number")
         return
     # the unit 1 of a bare number adds nothing
     unit = "" if at.unit == "1" else at.unit
-    number, given = as_float(value), f"{shown(value) if isinstance(value, int) else as_float(value)} {unit}".strip()
+    number, given = as_float(value), f"{quote(value) if isinstance(value, int) else as_float(value)} {unit}".strip()
     if not isfinite(number):
         yield at.problem("must be finite", value=given, remedy="give a finite number")
     elif not spec.allows(number):
@@ -63,7 +63,7 @@ def unit_problem(value: Any, spec: Spec, at: At) -> Problem:
     except QuantityError as bad:
         return at.problem(bad.message, bad.value, bad.remedy)
     # put in after the object was made, such as into a list of points
-    return at.problem(f"must be a number{within(at.unit)}", shown(value), "write a plain number")
+    return at.problem(f"must be a number{within(at.unit)}", quote(value), "write a plain number")
 
 
 def is_right(value: Any, spec: Spec) -> bool:
@@ -99,7 +99,7 @@ def list_problems(value: Any, spec: Spec, at: At) -> Iterator[Problem]:
     if value is None and spec.optional:
         return
     if has_unit(value) or getattr(value, "ndim", 1) == 0 or not hasattr(value, "__len__") or len(value) == 0:
-        yield at.problem("must be a list of numbers", value=shown(value), remedy=f"write [x, y, ...]: {spec.doc}")
+        yield at.problem("must be a list of numbers", value=quote(value), remedy=f"write [x, y, ...]: {spec.doc}")
         return
     # numbers are in rows of their own
     rows = [row if _is_row(row) else [row] for row in value]
@@ -107,7 +107,7 @@ def list_problems(value: Any, spec: Spec, at: At) -> Iterator[Problem]:
     if wrong is not None:
         place = At(at.path, f"{at.quantity}, number {wrong + 1}", at.unit)
         message, remedy = ("row of numbers", "[[x, y, ...], ...]") if spec.rows else ("number", "[x, y, ...]")
-        yield place.problem(f"must be a {message}", value=shown(value[wrong]), remedy=f"write {remedy}: {spec.doc}")
+        yield place.problem(f"must be a {message}", value=quote(value[wrong]), remedy=f"write {remedy}: {spec.doc}")
         return
     if len({len(row) for row in rows}) > 1:
         lengths = listed(len(row) for row in rows)
@@ -137,7 +137,7 @@ def curve_problems(value: Any, spec: Spec, at: At) -> Iterator[Problem]:
         yield from number_problems(value, spec, at)
         return
     if has_unit(value) or getattr(value, "ndim", 1) == 0 or not hasattr(value, "__len__") or len(value) == 0:
-        yield at.problem("must be a list of points", value=shown(value), remedy=f"write [[x, y], ...]: {spec.doc}")
+        yield at.problem("must be a list of points", value=quote(value), remedy=f"write [[x, y], ...]: {spec.doc}")
         return
     before = None
     plain = Spec("param", spec.unit_x, "", units=spec.units_x)
@@ -155,7 +155,7 @@ def curve_problems(value: Any, spec: Spec, at: At) -> Iterator[Problem]:
 def _point(point: Any, specs: tuple[Spec, Spec], at: At) -> Iterator[Problem]:
     """A pair of finite numbers."""
     if has_unit(point) or not hasattr(point, "__len__") or len(point) != 2:
-        yield at.problem("must be a pair of numbers", value=shown(point), remedy="write [x, y]")
+        yield at.problem("must be a pair of numbers", value=quote(point), remedy="write [x, y]")
         return
     for number, part in zip(point, specs, strict=True):
         yield from number_problems(number, part, At(at.path, at.quantity, part.unit))

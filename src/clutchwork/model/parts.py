@@ -19,7 +19,7 @@ class Sensor(Damper):
     """Gives the speed of a shaft to flows and processes; it has no torque and no signals of its own."""
 
 
-class Place(Displacement):
+class StopTravel(Displacement):
     """The position of a stop, which stands among the signals of that."""
 
 
@@ -101,12 +101,12 @@ def _pieces(component: Component) -> Iterator[Part]:
             yield from _pieces(part)
 
 
-def _places(component: Component) -> Iterator[Place]:
+def _places(component: Component) -> Iterator[StopTravel]:
     """The position of a stop."""
     if is_stop(component):
         joined = ports(component)
         (start,) = component.initial_states()
-        yield Place(place_of(component), base=joined["base"], follower=joined["follower"], initial_position=start)
+        yield StopTravel(place_of(component), base=joined["base"], follower=joined["follower"], initial_position=start)
 
 
 def _asked(element: Component) -> Iterator[Node]:

@@ -5,17 +5,17 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from clutchwork.base.errors import Problem
-from clutchwork.base.shown import shown
+from clutchwork.base.quote import quote
 from clutchwork.declare.node import HOUSING, Component, Domain, Node, ThermalNode
 from clutchwork.declare.ports import ports
 from clutchwork.declare.schema import Spec
-from clutchwork.declare.speech import path_of, say
+from clutchwork.declare.wording import path_of, say
 from clutchwork.model.components import component_advice, component_problems, connection_problems
 from clutchwork.model.model import Model
 from clutchwork.model.numbers import At, is_right, number_problems
 from clutchwork.model.parts import Parts, held_positions, placed, take_apart
 from clutchwork.model.temperatures import temperature_advice
-from clutchwork.model.thermal import Known, Within, node_kind, port_problems, reference_problems, thermal_problems
+from clutchwork.model.thermal import Referents, Within, node_kind, port_problems, reference_problems, thermal_problems
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -27,7 +27,7 @@ def part_problems(model: Model, incomplete: Sequence[str] = ()) -> tuple[list[Pr
     Nodes in `incomplete` belong to elements that are not there.
     """
     nodes, elements, thermal = model.nodes, model.elements, model.thermal
-    problems = [] if is_name(model.name) else [Problem("driveline", "name", NO_NAME, shown(model.name), GIVE_NAME)]
+    problems = [] if is_name(model.name) else [Problem("driveline", "name", NO_NAME, quote(model.name), GIVE_NAME)]
     problems += [problem for node in nodes for problem in node_problems(node)]
     problems += [problem for node in thermal for problem in thermal_problems(node)]
     parts, found = _parts(elements, thermal)
@@ -42,7 +42,7 @@ def part_problems(model: Model, incomplete: Sequence[str] = ()) -> tuple[list[Pr
     problems += name_problems(nodes, elements, sound)
     # what refers to an element with mistakes is looked at once those are mended
     if not broken and not incomplete:
-        known = Known.of(nodes, thermal, elements, sound)
+        known = Referents.of(nodes, thermal, elements, sound)
         wholes = {element.name: element for element in elements}
         for part in sound.components:
             problems += reference_problems(part, wholes.get(part.name, part), known)
@@ -146,12 +146,12 @@ def name_problems(nodes: Sequence[Node], elements: Sequence[Component], parts: P
     things += [(path_of(part), part.name) for part in inner]
     for path, name in things:
         if not is_name(name):
-            problems.append(Problem(path, "name", NO_NAME, shown(name), GIVE_NAME))
+            problems.append(Problem(path, "name", NO_NAME, quote(name), GIVE_NAME))
         elif name in seen:
             remedy = "choose another name: results are looked up by name"
             if path == seen[name]:
                 remedy += say("", f"; {RUN_AGAIN}")
-            problems.append(Problem(path, "name", f"is already the name of {seen[name]}", shown(name), remedy))
+            problems.append(Problem(path, "name", f"is already the name of {seen[name]}", quote(name), remedy))
         else:
             seen[name] = path
     return problems

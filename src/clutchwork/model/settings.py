@@ -7,10 +7,10 @@ from itertools import pairwise
 from typing import Any
 
 from clutchwork.base.errors import Problem, near
-from clutchwork.base.shown import listed, shown
+from clutchwork.base.quote import listed, quote
 from clutchwork.declare.options import ONE_GRID, SIMULATION
 from clutchwork.declare.schema import Spec
-from clutchwork.declare.speech import say
+from clutchwork.declare.wording import say
 from clutchwork.model.numbers import At, list_problems
 
 
@@ -28,7 +28,7 @@ def settings_problems(settings: Mapping[str, Any]) -> Iterator[Problem]:
         elif fault := row.fault(value):
             yield place.problem(fault.message, fault.value, fault.remedy)
     if settings.get("dt") is not None and settings.get("times") is not None:
-        yield at.inner("times").problem("is given beside dt", shown(settings["times"]), ONE_GRID)
+        yield at.inner("times").problem("is given beside dt", quote(settings["times"]), ONE_GRID)
 
 
 def _instants(value: Any, spec: Spec, at: At) -> Iterator[Problem]:
@@ -36,9 +36,9 @@ def _instants(value: Any, spec: Spec, at: At) -> Iterator[Problem]:
     found = list(list_problems(value, spec, at))
     yield from found
     if not found and any(hasattr(instant, "__len__") for instant in value):
-        yield at.problem("must be a list of numbers", shown(value), f"write [x, y, ...]: {spec.doc}")
+        yield at.problem("must be a list of numbers", quote(value), f"write [x, y, ...]: {spec.doc}")
     elif not found and any(after < before for before, after in pairwise(value)):
-        yield at.problem("must not decrease", shown(value), "sort the instants; one may be given twice")
+        yield at.problem("must not decrease", quote(value), "sort the instants; one may be given twice")
 
 
 def plain_settings(settings: Mapping[str, Any]) -> dict[str, Any]:

@@ -10,9 +10,9 @@ from clutchwork.base.errors import Problem
 from clutchwork.declare.node import Domain
 from clutchwork.declare.rational import MINUS, ONE, ZERO, Echelon, Row, exact, plus, smallest
 from clutchwork.declare.schema import Role, specs
-from clutchwork.declare.speech import path_of
-from clutchwork.elements.bases.motion import Motion, MotionError
-from clutchwork.model.transmissions import start_grips, start_rows
+from clutchwork.declare.wording import path_of
+from clutchwork.elements.bases.motion import MotionError, PrescribedMotion
+from clutchwork.model.variable_ratios import start_grips, start_rows
 from clutchwork.signals.bases.waveform import value
 from clutchwork.signals.constant import Constant
 
@@ -115,7 +115,7 @@ def _begun(model: Mechanism, made: Kinematics) -> Callable[[int], float]:
     return begun
 
 
-def _finite_speed(motion: Motion, begun: float) -> Signal:
+def _finite_speed(motion: PrescribedMotion, begun: float) -> Signal:
     """The speed that a motion gives, which is finite at the start."""
     made = motion.speed_signal(begun)
     if isfinite(speed := value(made, 0.0)):

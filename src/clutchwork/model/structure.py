@@ -13,7 +13,7 @@ from clutchwork.declare.node import Component, Domain, Node
 from clutchwork.declare.ports import coefficients, ports
 from clutchwork.declare.rational import MINUS, ONE, Row, exact, plus
 from clutchwork.declare.schema import Role
-from clutchwork.declare.speech import path_of
+from clutchwork.declare.wording import path_of
 from clutchwork.model.numbers import as_float
 
 if TYPE_CHECKING:
@@ -21,7 +21,7 @@ if TYPE_CHECKING:
     from fractions import Fraction
 
 
-class Places:
+class NodePlaces:
     """Place of each node by identity; by name where it is inside of a composite, which makes it anew when asked."""
 
     def __init__(self, nodes: Sequence[Node]) -> None:
@@ -63,9 +63,9 @@ class Mechanism:
         return [(c, row) for role in (Role.TORQUE, Role.CONTACT) for c in self.role(role) for row in self.directions(c)]
 
     @cached_property
-    def places(self) -> Places:
+    def places(self) -> NodePlaces:
         """Place of each node."""
-        return Places(self.nodes)
+        return NodePlaces(self.nodes)
 
     @cached_property
     def inertia(self) -> list[Fraction]:

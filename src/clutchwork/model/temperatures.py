@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 from clutchwork.base.errors import Problem
 from clutchwork.declare.node import Law, Signal
 from clutchwork.declare.schema import Spec, specs
-from clutchwork.declare.speech import path_of
+from clutchwork.declare.wording import path_of
 from clutchwork.model.fields import CHECKS
 from clutchwork.model.numbers import At
 from clutchwork.model.thermal import NODE_FIELDS, node_kind

@@ -7,13 +7,13 @@ from typing import Any
 
 from clutchwork.base.classes import dataclass
 from clutchwork.base.errors import Problem, near
-from clutchwork.base.shown import listed, shown
+from clutchwork.base.quote import listed, quote
 from clutchwork.declare import units
 from clutchwork.declare.node import Component, Domain, HeatFlow, Node, Part, Rate, ThermalNode, is_reference
 from clutchwork.declare.ports import thermal_ports
 from clutchwork.declare.quantity import within
 from clutchwork.declare.schema import Role, Spec, specs
-from clutchwork.declare.speech import path_of
+from clutchwork.declare.wording import path_of
 from clutchwork.model.fields import CHECKS
 from clutchwork.model.numbers import At, number_problems
 from clutchwork.model.parts import Parts, role, state_name
@@ -43,7 +43,7 @@ def thermal_problems(node: ThermalNode) -> Iterator[Problem]:
             yield from number_problems(node.limit, LIMIT, At(path, "limit", "K"))
     elif is_reference(node.temperature):
         message, remedy = "must be a number in [K] or a signal", "join the nodes by a Conduction instead"
-        yield At(path, "temperature").problem(message, shown(node.temperature), remedy)
+        yield At(path, "temperature").problem(message, quote(node.temperature), remedy)
     else:
         yield from CHECKS["signal"](node.temperature, AROUND, At(path, "temperature", "K"))
 
@@ -71,14 +71,14 @@ def port_problems(component: Component, thermal: Sequence[ThermalNode], within: 
         foreign = node.name in {other.name for other in thermal} and id(node) not in own
         if foreign or (id(node) not in own and not within.holds(node)):
             found = near(node.name, [other.name for other in thermal])
-            yield at.inner(name).problem("belongs to another driveline", shown(node.name), f"create it here{found}")
+            yield at.inner(name).problem("belongs to another driveline", quote(node.name), f"create it here{found}")
     if role(component) is Role.FLOW and len({node.name for node in joined.values()}) < len(joined):
-        message = f"{' and '.join(joined)} are both attached to {shown(next(iter(joined.values())).name)}"
+        message = f"{' and '.join(joined)} are both attached to {quote(next(iter(joined.values())).name)}"
         yield at.problem(message, remedy="attach them to two different thermal nodes")
 
 
 @dataclass(frozen=True)
-class Known:
+class Referents:
     """What inputs may refer to, by name."""
 
     states: Mapping[str, tuple[str, ...]]  # thermal node or "process.state" -> unit
@@ -89,7 +89,7 @@ class Known:
     @classmethod
     def of(
         cls, nodes: Sequence[Node], thermal: Sequence[ThermalNode], elements: Sequence[Component], parts: Parts
-    ) -> Known:
+    ) -> Referents:
         """Everything in a driveline."""
         states: dict[str, tuple[str, ...]] = {node.name: ("K",) for node in parts.thermal}
         for process in parts.components:
@@ -108,14 +108,14 @@ class Known:
 
 
 def _inside(component: Component) -> Iterator[Part]:
-    """Everything that an element is made of, parts of its parts included."""
+    """All parts of an element, at every level."""
     for part in component.parts():
         yield part
         if isinstance(part, Component) and part.name != component.name:
             yield from _inside(part)
 
 
-def reference_problems(component: Component, whole: Component, known: Known) -> Iterator[Problem]:
+def reference_problems(component: Component, whole: Component, known: Referents) -> Iterator[Problem]:
     """Inputs that other components give: whether those are there, and give what is wanted.
 
     `whole` is what was written: the component, or the composite that has a part of its own name.
@@ -138,7 +138,7 @@ def _temperature(component: Component, at: At) -> Iterator[Problem]:
         yield at.problem("is missing", remedy="give a temperature [K], or connect the contact by `heat` to a node")
 
 
-def _reference(value: Any, spec: Spec, at: At, component: Component, known: Known) -> Iterator[Problem]:
+def _reference(value: Any, spec: Spec, at: At, component: Component, known: Referents) -> Iterator[Problem]:
     if not _may_refer(value, role(component)):
         yield at.problem(f"must be a number{within(at.unit)} or a signal", _words(value), "give one of them")
         return
@@ -159,7 +159,7 @@ def _may_refer(value: Any, to: Role) -> bool:
     return to is not Role.MOTION
 
 
-def _missing(value: Any, known: Known) -> tuple[str, str, str] | None:
+def _missing(value: Any, known: Referents) -> tuple[str, str, str] | None:
     """Message, value and remedy where a reference leads nowhere."""
     direct = isinstance(value, Rate | HeatFlow)
     target = value.of if direct else value[0] if isinstance(value, tuple) else value
@@ -178,12 +178,12 @@ def _missing(value: Any, known: Known) -> tuple[str, str, str] | None:
     own = [name for name in known.states if name.startswith(f"{target.name}.")]
     return (
         f"is an unknown state{near(state_name(value), own)}",
-        shown(state_name(value)),
+        quote(state_name(value)),
         f"known states: {listed(own)}",
     )
 
 
-def _foreign(target: Any, value: Any, known: Known) -> tuple[str, str, str]:
+def _foreign(target: Any, value: Any, known: Referents) -> tuple[str, str, str]:
     """A shaft, node or element that is referred to and was not added."""
     if target.name in known.parts or any(thing.name == target.name for thing in known.added.values()):
         remedy = "use the one that was added, or add this one under another name"
@@ -196,7 +196,7 @@ def _foreign(target: Any, value: Any, known: Known) -> tuple[str, str, str]:
     return "was not added to this driveline", _words(value), remedy
 
 
-def _unit(value: Any, known: Known) -> str:
+def _unit(value: Any, known: Referents) -> str:
     if isinstance(value, HeatFlow):
         return "W"
     target = value.of if isinstance(value, Rate) else value
@@ -208,5 +208,5 @@ def _unit(value: Any, known: Known) -> str:
 def _words(value: Any) -> str:
     """A reference in words."""
     if isinstance(value, Rate | HeatFlow):
-        return f"{type(value).__name__} of {shown(value.of.name)}"
-    return shown(value[0].name if isinstance(value, tuple) else value.name)
+        return f"{type(value).__name__} of {quote(value.of.name)}"
+    return quote(value[0].name if isinstance(value, tuple) else value.name)

@@ -1,1 +1,1 @@
-"""Pages that compute: one HTML file with the core inside, in which a reader moves knots and numbers."""
+"""Interactive pages: one HTML file with the core inside, with curves and sliders to drag."""

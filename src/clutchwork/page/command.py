@@ -10,7 +10,7 @@ from typing import Any
 from clutchwork.base import shell
 from clutchwork.base.errors import ModelWarning
 from clutchwork.base.writing import put
-from clutchwork.declare.speech import words_of_files
+from clutchwork.declare.wording import words_of_files
 
 EXAMPLES = (
     ("clutchwork page model.toml", "its page, model.html, with what is usual"),
@@ -60,7 +60,7 @@ def page_command(asked: argparse.Namespace) -> int:
     """Write the page; the exit code."""
     from clutchwork.declare.quantity import in_si
     from clutchwork.face.driveline import Driveline
-    from clutchwork.page.data import Wanted
+    from clutchwork.page.data import PageRequest
     from clutchwork.page.page import page
     from clutchwork.run.settings import merged
 
@@ -72,7 +72,7 @@ def page_command(asked: argparse.Namespace) -> int:
         system = Driveline.load(asked.model).assemble()
         given = {} if asked.t_end is None else {"t_end": _seconds(asked.t_end, in_si)}
         t_end, options = merged(system.settings, given)
-        made = page(system, t_end, options, Wanted(asked.drag, asked.slider, asked.show))
+        made = page(system, t_end, options, PageRequest(asked.drag, asked.slider, asked.show))
     put(out, made)
     if asked.json:
         shell.tell_json({"files": [str(out)], "bytes": len(made.encode())})

@@ -22,7 +22,7 @@ from clutchwork.page.slider import Bytes
 from clutchwork.page.sliders import names_of, sliders
 from clutchwork.results.channels import Channels, channels
 from clutchwork.results.forms import Slip
-from clutchwork.sweeps.words import Layout
+from clutchwork.sweeps.system_words import SystemLayout
 
 if TYPE_CHECKING:
     from clutchwork.assembly.system import System
@@ -34,7 +34,7 @@ FORMAT = 1
 
 
 @dataclass(frozen=True)
-class Wanted:
+class PageRequest:
     """What a page shows, and what its reader may change; None: what is usual."""
 
     drag: Sequence[str] | None = None
@@ -42,7 +42,7 @@ class Wanted:
     show: Sequence[str] | None = None
 
 
-def data_of(system: System, t_end: float, options: Options, wanted: Wanted) -> dict[str, Any]:
+def data_of(system: System, t_end: float, options: Options, wanted: PageRequest) -> dict[str, Any]:
     """The data of a page."""
     refuse_controllers(system)
     knots = chosen(system, wanted.drag, t_end)
@@ -113,7 +113,7 @@ def _options(options: Options) -> dict[str, float]:
 
 def _places(system: System) -> dict[str, int]:
     """Where arrays begin in the bytes."""
-    starts = Layout.of(system).starts
+    starts = SystemLayout.of(system).starts
     return {name: starts[name] for name in ("input_value", "segment_time", "segment_coef")}
 
 

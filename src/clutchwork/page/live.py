@@ -7,10 +7,10 @@ from html import escape
 from typing import TYPE_CHECKING, Any
 
 from clutchwork.base.classes import dataclass
-from clutchwork.schematic.cells import Piece
-from clutchwork.schematic.diagram import Diagram, Thing, diagram
+from clutchwork.schematic.cells import SymbolCell
+from clutchwork.schematic.diagram import SymbolGraph, Thing, diagram
 from clutchwork.schematic.look import OPEN, STATES
-from clutchwork.schematic.moment import Moment
+from clutchwork.schematic.moment import Snapshot
 from clutchwork.schematic.pen import Mark, Stroke, Text
 from clutchwork.schematic.sheet import DOT, Sheet, sheet
 
@@ -48,7 +48,7 @@ class Room(str):
 
 
 @dataclass(frozen=True, eq=False)
-class Alike(Moment):
+class Alike(Snapshot):
     """All contacts in one state."""
 
     known: frozenset[str]
@@ -98,7 +98,7 @@ def live(model: Model, known: Collection[str], contacts: Collection[str], width:
     return Live(f'{head} width="{wide:.0f}" height="{tall:.0f}">{body}</svg>', tuple(signals))
 
 
-def _sheet(found: Diagram, moment: Moment, width: float) -> Sheet:
+def _sheet(found: SymbolGraph, moment: Snapshot, width: float) -> Sheet:
     return sheet(found, moment, values=False, width=width * POINTS)
 
 
@@ -115,7 +115,7 @@ def _body(sheets: dict[str, Sheet], ink: _Ink) -> Iterator[str]:
         yield from _piece(piece, alike, ink)
 
 
-def _piece(piece: Piece, alike: dict[str, Piece], ink: _Ink) -> Iterator[str]:
+def _piece(piece: SymbolCell, alike: dict[str, SymbolCell], ink: _Ink) -> Iterator[str]:
     """A symbol; where it differs by state, each once, of which the page shows one."""
     yield f'<g data-name="{escape(piece.name)}"><title>{escape(piece.name)}</title>'
     if len({repr(one.marks) for one in alike.values()}) > 1:

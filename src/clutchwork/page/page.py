@@ -9,9 +9,9 @@ from typing import TYPE_CHECKING, Any
 
 from clutchwork.base.errors import ModelWarning, UseError
 from clutchwork.base.paths import path_fault
-from clutchwork.base.shown import shown
+from clutchwork.base.quote import quote
 from clutchwork.base.writing import put
-from clutchwork.page.data import Wanted, data_of
+from clutchwork.page.data import PageRequest, data_of
 from clutchwork.page.html import html
 
 if TYPE_CHECKING:
@@ -28,21 +28,21 @@ def page_of(run: Trajectory, path: Any, drag: Any, sliders: Any, show: Any) -> P
     return put(Path(path), page(run.system, run.t_end, run.options, wanted_of(drag, sliders, show)))
 
 
-def page(system: System, t_end: float, options: Options, wanted: Wanted) -> str:
+def page(system: System, t_end: float, options: Options, wanted: PageRequest) -> str:
     """The page of a System as HTML."""
     return html(quiet_data(system, t_end, options, wanted), system.name or "driveline")
 
 
-def quiet_data(system: System, t_end: float, options: Options, wanted: Wanted) -> dict[str, Any]:
+def quiet_data(system: System, t_end: float, options: Options, wanted: PageRequest) -> dict[str, Any]:
     """Its data. Stops of sliders may be odd models; the page is that of a model that was looked at."""
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", ModelWarning)
         return data_of(system, t_end, options, wanted)
 
 
-def wanted_of(drag: Any, sliders: Any, show: Any) -> Wanted:
+def wanted_of(drag: Any, sliders: Any, show: Any) -> PageRequest:
     """What is asked for, by names."""
-    return Wanted(_list(drag), _list(sliders), _list(show))
+    return PageRequest(_list(drag), _list(sliders), _list(show))
 
 
 def refuse(call: str, problems: Sequence[str] = (), **lists: Any) -> None:
@@ -61,11 +61,11 @@ def _path_problems(path: Any) -> Iterator[str]:
     if fault:
         yield fault
     elif Path(path).suffix.lower() not in ENDINGS:
-        yield f"{shown(str(path))} does not end in .html: a page is one file of HTML"
+        yield f"{quote(str(path))} does not end in .html: a page is one file of HTML"
 
 
 def _list_problems(lists: Mapping[str, Any]) -> Iterator[str]:
     for name, given in lists.items():
         words = [given] if isinstance(given, str) else given
         if words is not None and not (isinstance(words, list | tuple) and all(isinstance(word, str) for word in words)):
-            yield f"{name} is {shown(given)}: give names, such as {name}=['F1.*']"
+            yield f"{name} is {quote(given)}: give names, such as {name}=['F1.*']"

@@ -42,7 +42,7 @@ FELT = ("Pa", "N", "N m")
 
 
 @dataclass(frozen=True)
-class Panel:
+class PagePanel:
     """Curves over one axis."""
 
     title: str
@@ -71,7 +71,7 @@ def _driven(system: System) -> set[str]:
 
 def panels(
     known: Channels, wiring: Wiring, wanted: Sequence[str] | None, output: str, felt: bool = True
-) -> list[Panel]:
+) -> list[PagePanel]:
     """What is shown: what is asked for, or speeds, slips, torques, heats and temperatures; the output last.
 
     Parameters: felt, whether acceleration and jerk of the output are shown without being asked for.
@@ -84,20 +84,20 @@ def panels(
         named = [name for name in single if name not in jerks]
         names = [name for name in chosen(named, known, known.fault, "page") if _is_number(known[name])]
         found = _by_unit(known, names[:MOST_SHOWN])
-        found += [Panel("Jerk", JERK[known[_slope(name)].unit], (name,)) for name in dict.fromkeys(jerks)]
+        found += [PagePanel("Jerk", JERK[known[_slope(name)].unit], (name,)) for name in dict.fromkeys(jerks)]
     return _with_output(found, known, output) if felt else found
 
 
-def _with_output(found: list[Panel], known: Channels, output: str) -> list[Panel]:
+def _with_output(found: list[PagePanel], known: Channels, output: str) -> list[PagePanel]:
     """Panels, and those of how the output feels as the last ones."""
     acceleration, jerk = f"{output}.acceleration", f"{output}.jerk"
     if acceleration not in known:
         return found
     unit = known[acceleration].unit
     found = [one for one in found if one.names not in ((acceleration,), (jerk,))]
-    found.append(Panel("Acceleration of the output", unit, (acceleration,)))
+    found.append(PagePanel("Acceleration of the output", unit, (acceleration,)))
     if unit in JERK:
-        found.append(Panel("Jerk of the output", JERK[unit], (jerk,)))
+        found.append(PagePanel("Jerk of the output", JERK[unit], (jerk,)))
     return found
 
 
@@ -130,7 +130,7 @@ def _both(name: str, known: Channels) -> tuple[str, str]:
     return next((cut for cut in cuts if cut[0] in known and cut[1] in known), cuts[0])
 
 
-def _usual(known: Channels, wiring: Wiring) -> list[Panel]:
+def _usual(known: Channels, wiring: Wiring) -> list[PagePanel]:
     nodes = [node.name for node in wiring.nodes]
     speeds = [name for node in nodes if (name := f"{node}.speed") in known]
     contacts = [branch.name for branch in wiring.contacts if f"{branch.name}.slip" in known]
@@ -142,7 +142,7 @@ def _usual(known: Channels, wiring: Wiring) -> list[Panel]:
         "Temperature": [name for name in known if known[name].unit in ("K", "degC")],
     }
     return [
-        Panel(title, part.unit, part.names)
+        PagePanel(title, part.unit, part.names)
         for title, some in names.items()
         for parts in [_by_unit(known, some[:MOST_USUAL])]
         for part in parts
@@ -150,18 +150,18 @@ def _usual(known: Channels, wiring: Wiring) -> list[Panel]:
 
 
 def _evenly(names: list[str]) -> list[str]:
-    """The first and the last, and some between where there are many."""
+    """At most `MOST_USUAL` names, evenly spaced, the first and the last among them."""
     if len(names) <= MOST_USUAL:
         return names
     step = (len(names) - 1) / (MOST_USUAL - 1)
     return list(dict.fromkeys(names[round(number * step)] for number in range(MOST_USUAL)))
 
 
-def _by_unit(known: Channels, names: Sequence[str]) -> list[Panel]:
+def _by_unit(known: Channels, names: Sequence[str]) -> list[PagePanel]:
     groups = dict[str, list[str]]()
     for name in names:
         groups.setdefault(known[name].unit, []).append(name)
-    return [Panel(TITLES.get(unit, "Value"), unit, tuple(some)) for unit, some in groups.items()]
+    return [PagePanel(TITLES.get(unit, "Value"), unit, tuple(some)) for unit, some in groups.items()]
 
 
 def _is_number(channel: Channel) -> bool:
@@ -182,6 +182,6 @@ def listed(known: Channels, names: Sequence[str]) -> dict[str, dict[str, Any]]:
     return found
 
 
-def plain_panels(found: Sequence[Panel]) -> list[Mapping[str, Any]]:
+def plain_panels(found: Sequence[PagePanel]) -> list[Mapping[str, Any]]:
     """As a page has them."""
     return [{"title": one.title, "unit": one.unit, "names": list(one.names)} for one in found]

@@ -233,7 +233,7 @@ def _at_all(system: System, made: Slider, bytes_of: Bytes) -> Slider:
 def _twice(found: Sequence[Slider]) -> list[str]:
     """Numbers that two sliders would turn."""
     return [
-        f"slider: {name} is turned by {one.name!r} and {other.name!r}; leave it to one of them"
+        f"slider: {name} has two sliders, {one.name!r} and {other.name!r}; remove one of them"
         for one, other in combinations(found, 2)
         for name in one.names
         if name in other.names

@@ -8,7 +8,7 @@ from numbers import Real
 from typing import Any
 
 from clutchwork.base.errors import UseError, near
-from clutchwork.base.shown import shown
+from clutchwork.base.quote import quote
 
 Data = Sequence[Mapping[str, Any]]
 
@@ -39,19 +39,19 @@ def _problems(
     for name, value in given.items():
         if name not in known:
             there = f"there are {', '.join(map(repr, known))}" if known else f"it has no {what}s"
-            yield f"{shown(name)} is no {what} of this widget{near(name, known, there)}"
+            yield f"{quote(name)} is no {what} of this widget{near(name, known, there)}"
         elif wrong := fault(name, value):
             yield wrong
 
 
 def _value_fault(name: str, value: Any, unit: str) -> str:
-    return "" if _is_number(value) else f"{name} is {shown(value)}, not a finite number in {unit or '1'}"
+    return "" if _is_number(value) else f"{name} is {quote(value)}, not a finite number in {unit or '1'}"
 
 
 def _knots_fault(name: str, knots: Any) -> str:
     if isinstance(knots, list | tuple) and knots and all(map(_is_knot, knots)):
         return ""
-    return f"{name} is {shown(knots)}; give knots, such as [[0.0, 0.0], [0.5, 2e5]], times in s and values in SI"
+    return f"{name} is {quote(knots)}; give knots, such as [[0.0, 0.0], [0.5, 2e5]], times in s and values in SI"
 
 
 def _is_knot(knot: Any) -> bool:

@@ -18,15 +18,15 @@ from numpy.typing import NDArray
 from clutchwork.assembly.wiring import HOUSING, Branch, GearRow, Wiring, wiring
 from clutchwork.base.classes import dataclass
 from clutchwork.base.errors import UnknownName, near
-from clutchwork.base.kept import kept
-from clutchwork.base.shown import shown
+from clutchwork.base.memoize import memoize
+from clutchwork.base.quote import quote
 from clutchwork.declare.node import Domain
 from clutchwork.declare.ports import directions
-from clutchwork.declare.speech import where_signals
-from clutchwork.model.transmissions import is_transmission
+from clutchwork.declare.wording import where_signals
+from clutchwork.model.variable_ratios import is_transmission
 from clutchwork.results import heat_channels, reactions
 from clutchwork.results.forms import LOCKED as LOCKED
-from clutchwork.results.forms import Affine, Column, Form, Linear, Mode, Power, Powers, Slip, Total
+from clutchwork.results.forms import Affine, Dot, Form, Mode, Power, Powers, RowEntry, Slip, Total
 
 if TYPE_CHECKING:
     from clutchwork.assembly.system import System
@@ -50,7 +50,7 @@ class Channel:
 
 
 def _unknown(name: object, known: Iterable[str]) -> str:
-    return f"no signal {shown(name)}{near(name, known, where_signals())}"
+    return f"no signal {quote(name)}{near(name, known, where_signals())}"
 
 
 class Units(dict[str, str]):
@@ -197,13 +197,13 @@ class Channels(Mapping[str, Channel]):
         wiring, made = self._wiring, reactions.multipliers(self._wiring)
         yield from _gear_torques(wiring, made)
         for index, branch in enumerate(wiring.motions):
-            torque, rate = Linear.of(made[len(wiring.gears) + index]), self._rate(branch)
+            torque, rate = Dot.of(made[len(wiring.gears) + index]), self._rate(branch)
             yield f"{branch.name}.torque", Channel(TORQUE[branch.domain], torque)
             yield f"{branch.name}.power", Channel("W", Power(torque, rate))
             yield f"{branch.name}.work", _column(self._start("prescribed_work") + index, "J")
         for domain in Domain:
             if domain is Domain.ROTATION or any(node.domain is domain for node in wiring.nodes):
-                yield REACTION[domain], Channel(TORQUE[domain], Linear.of(reactions.on_housing(wiring, made, domain)))
+                yield REACTION[domain], Channel(TORQUE[domain], Dot.of(reactions.on_housing(wiring, made, domain)))
 
     def _sensor(self, branch: Branch) -> Iterator[tuple[str, Channel]]:
         """Motion of the follower against the base."""
@@ -212,20 +212,20 @@ class Channels(Mapping[str, Channel]):
         yield f"{branch.name}.speed", Channel(SPEED[domain], self._along(branch, "speed"))
         yield f"{branch.name}.acceleration", Channel(ACCELERATION[domain], self._along(branch, "acceleration"))
 
-    def _rate(self, branch: Branch) -> Linear:
+    def _rate(self, branch: Branch) -> Dot:
         """Rate of a branch."""
         return self._along(branch, "speed")
 
-    def _along(self, branch: Branch, part: str) -> Linear:
+    def _along(self, branch: Branch, part: str) -> Dot:
         """Speed, angle or acceleration along the direction of a branch."""
         vector = np.zeros(self._wiring.row_size)
         for node, coefficient in branch.direction.items():
             if node != HOUSING:
                 vector[self._start(part) + node] += coefficient
-        return Linear.of(vector)
+        return Dot.of(vector)
 
 
-@kept
+@memoize
 def channels(system: System, angles: bool = True, work: bool = True) -> Channels:
     """All signals of a System by name, found once; those that are not integrated are left out."""
     return Channels(wiring(system), angles=angles, work=work)
@@ -255,7 +255,7 @@ def _gear_torques(wiring: Wiring, made: Array) -> Iterator[tuple[str, Channel]]:
             before = totals[name][0] if name in totals else np.zeros(wiring.row_size)
             totals[name] = (before + coefficient * made[index], row.domains[port])
     for name, (vector, domain) in totals.items():
-        yield name, Channel(TORQUE[domain], Linear.of(vector))
+        yield name, Channel(TORQUE[domain], Dot.of(vector))
 
 
 def _line(wiring: Wiring, row: GearRow, made: Array) -> Iterator[tuple[str, Channel]]:
@@ -264,7 +264,7 @@ def _line(wiring: Wiring, row: GearRow, made: Array) -> Iterator[tuple[str, Chan
     speed = np.zeros(wiring.row_size)
     if node != HOUSING:
         speed[wiring.columns["speed"].start + node] = 1.0
-    torque, rate, domain = Linear.of(factor * made), Linear.of(speed), row.domains["follower"]
+    torque, rate, domain = Dot.of(factor * made), Dot.of(speed), row.domains["follower"]
     yield f"{row.name}.torque", Channel(TORQUE[domain], torque)
     yield f"{row.name}.speed", Channel(SPEED[domain], rate)
     yield f"{row.name}.power", Channel("W", Power(torque, rate))
@@ -285,4 +285,4 @@ def _mesh_friction(wiring: Wiring) -> dict[str, tuple[Array, Domain]]:
 
 
 def _column(column: int, unit: str) -> Channel:
-    return Channel(unit, Column(column))
+    return Channel(unit, RowEntry(column))

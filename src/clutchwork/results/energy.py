@@ -21,7 +21,7 @@ from numpy.typing import NDArray
 from clutchwork.assembly.wiring import Branch, Wiring
 from clutchwork.base.classes import dataclass
 from clutchwork.base.extras import need
-from clutchwork.base.text import columns
+from clutchwork.base.plural import columns
 from clutchwork.declare.calls import explained_methods
 from clutchwork.declare.node import Component, Work
 from clutchwork.results.events import Events

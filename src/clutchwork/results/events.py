@@ -12,8 +12,8 @@ from numpy.typing import NDArray
 from clutchwork.base.classes import dataclass
 from clutchwork.base.errors import UnknownName, near
 from clutchwork.base.paths import fitting
-from clutchwork.base.shown import listed, shown
-from clutchwork.base.text import columns
+from clutchwork.base.plural import columns
+from clutchwork.base.quote import listed, quote
 from clutchwork.declare.calls import explained, explained_methods
 from clutchwork.declare.layout import CAUSES, EVENT, MODES
 
@@ -88,7 +88,7 @@ class Events(Sequence[Event]):
         known = [event.element for event in self] if self._contacts is None else self._contacts
         if element not in known and element != "":
             remedy = f"contacts are {listed(dict.fromkeys(known))}" if known else "the model has no contacts"
-            raise UnknownName(f"no contact {shown(element)}{near(element, known, remedy)}")
+            raise UnknownName(f"no contact {quote(element)}{near(element, known, remedy)}")
         return Events([event for event in self if event.element == element], self._contacts)
 
     def changes(self) -> Events:

@@ -17,8 +17,8 @@ from numpy.typing import NDArray
 from clutchwork.assembly.wiring import HOUSING, Branch, GearRow, Wiring
 from clutchwork.base.classes import dataclass
 from clutchwork.base.errors import OptionError, UseError
-from clutchwork.base.kept import kept
-from clutchwork.base.shown import shown
+from clutchwork.base.memoize import memoize
+from clutchwork.base.quote import quote
 from clutchwork.declare.quantity import QuantityError, has_unit, in_si
 from clutchwork.results import reactions
 from clutchwork.results.channels import LOCKED
@@ -99,7 +99,7 @@ def _gauss(steps: Array, begin: float, end: float, row_size: int) -> Iterator[tu
         yield times.ravel(), (widths[:, None] * WEIGHTS).ravel()
 
 
-@kept
+@memoize
 def _steps(run: Recorded) -> Array:
     """Ends of the steps of the solver [s]; the run is repeated once for them."""
     times: Array = run.repeat(None).time
@@ -227,7 +227,7 @@ def _time(name: str, given: Any, otherwise: float, call: str) -> float:
     try:
         value = in_si(given, "s") if has_unit(given) else given
     except QuantityError as bad:
-        raise UseError(call, [f"{name} is {shown(given)}: {bad.message}; give a time in s"]) from None
+        raise UseError(call, [f"{name} is {quote(given)}: {bad.message}; give a time in s"]) from None
     if isinstance(value, bool) or not isinstance(value, Real):
-        raise UseError(call, [f"{name} is {shown(given)}: give a time in s"])
+        raise UseError(call, [f"{name} is {quote(given)}: give a time in s"])
     return float(value)

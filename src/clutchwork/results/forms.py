@@ -69,7 +69,7 @@ class Form(ABC):
 
 
 @dataclass(frozen=True)
-class Column(Form):
+class RowEntry(Form):
     """A number of the row as it stands."""
 
     index: int
@@ -80,8 +80,8 @@ class Column(Form):
     def reads(self) -> set[int]:
         return {self.index}
 
-    def over(self, places: Places) -> Column:
-        return Column(places[self.index])
+    def over(self, places: Places) -> RowEntry:
+        return RowEntry(places[self.index])
 
     def weights(self, rows: Rows) -> Weights:
         return _constant([self.index], [1.0], rows)
@@ -152,7 +152,7 @@ class Total(Form):
 
 
 @dataclass(frozen=True, eq=False)
-class Linear(Form):
+class Dot(Form):
     """Product with a constant vector; columns with factor 0 are left out, for they may be infinite.
 
     Terms are added in their order, so that a row has the same value whatever rows stand beside it.
@@ -162,7 +162,7 @@ class Linear(Form):
     factors: Array
 
     @classmethod
-    def of(cls, vector: Array) -> Linear:
+    def of(cls, vector: Array) -> Dot:
         """From a vector over the whole row."""
         used = np.flatnonzero(vector)
         return cls(used, vector[used])
@@ -174,8 +174,8 @@ class Linear(Form):
     def reads(self) -> set[int]:
         return {int(index) for index in self.used}
 
-    def over(self, places: Places) -> Linear:
-        return Linear(np.array([places[int(index)] for index in self.used], dtype=np.intp), self.factors)
+    def over(self, places: Places) -> Dot:
+        return Dot(np.array([places[int(index)] for index in self.used], dtype=np.intp), self.factors)
 
     def weights(self, rows: Rows) -> Weights:
         return _constant(self.used, self.factors, rows)
@@ -198,7 +198,7 @@ class Linear(Form):
 class Slip(Form):
     """Slip of a contact; exactly zero while it is locked."""
 
-    rate: Linear
+    rate: Dot
     mode: int
 
     def __call__(self, rows: Rows) -> Array:
@@ -228,8 +228,8 @@ class Slip(Form):
 class Power(Form):
     """Product of a torque and a rate."""
 
-    torque: Total | Linear
-    rate: Linear | Slip
+    torque: Total | Dot
+    rate: Dot | Slip
 
     def __call__(self, rows: Rows) -> Array:
         return self.torque(rows) * self.rate(rows)

@@ -11,10 +11,10 @@ import numpy as np
 from clutchwork.base.classes import dataclass
 from clutchwork.base.errors import UnknownName, near
 from clutchwork.base.extras import need
-from clutchwork.base.shown import listed, shown
-from clutchwork.base.text import columns
+from clutchwork.base.plural import columns
+from clutchwork.base.quote import listed, quote
 from clutchwork.results.channels import LOCKED
-from clutchwork.results.stretches import in_full
+from clutchwork.results.locked_intervals import in_full
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -107,7 +107,7 @@ def table_of(system: System, name: str = "") -> ShiftTable:
         return next(iter(known.values()))
     if name not in known:
         remedy = f"gearboxes are {listed(known)}" if known else "the model has no cw.Transmission"
-        fault = f"no gearbox {shown(name)}{near(name, known, remedy)}" if name else f"no gearbox is named; {remedy}"
+        fault = f"no gearbox {quote(name)}{near(name, known, remedy)}" if name else f"no gearbox is named; {remedy}"
         raise UnknownName(fault)
     return known[name]
 

@@ -12,8 +12,8 @@ from numpy.typing import NDArray
 from clutchwork.base.classes import dataclass
 from clutchwork.base.errors import ClutchworkError, UnknownName, near
 from clutchwork.base.extras import need
-from clutchwork.base.shown import listed, shown
-from clutchwork.base.text import columns, counted
+from clutchwork.base.plural import columns, counted
+from clutchwork.base.quote import listed, quote
 from clutchwork.declare.calls import explained_methods
 
 if TYPE_CHECKING:
@@ -120,7 +120,7 @@ class Gradient:
 def _place(name: object, known: Sequence[str], what: str) -> int:
     if isinstance(name, str) and name in known:
         return known.index(name)
-    raise UnknownName(f"no {what} {shown(name)}{near(name, known, f'there are {listed(known)}')}")
+    raise UnknownName(f"no {what} {quote(name)}{near(name, known, f'there are {listed(known)}')}")
 
 
 def quotient(unit: str, by: str) -> str:

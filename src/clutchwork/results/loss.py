@@ -46,7 +46,7 @@ class LossTable(Protocol):
 
     @property
     def lines(self) -> tuple[Loss, ...]:
-        """Elements and shafts."""
+        """Losses of every element and shaft."""
 
     @property
     def joints(self) -> tuple[tuple[str, str, float], ...]:

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 from clutchwork.base.classes import dataclass
 from clutchwork.base.extras import need
 from clutchwork.base.paths import fitting
-from clutchwork.base.text import columns
+from clutchwork.base.plural import columns
 from clutchwork.declare.calls import explained, explained_methods
 from clutchwork.declare.node import Component, Domain, Work
 from clutchwork.results.flows import Flows
@@ -80,11 +80,11 @@ class Losses:
     def __getitem__(self, element: str) -> Loss:
         """The line of an element or shaft; UnknownName, a KeyError, with near ones."""
         from clutchwork.base.errors import UnknownName, near
-        from clutchwork.base.shown import shown
+        from clutchwork.base.quote import quote
 
         known = {line.element: line for line in self.lines}
         if element not in known:
-            raise UnknownName(f"no element or shaft {shown(element)}{near(element, known)}")
+            raise UnknownName(f"no element or shaft {quote(element)}{near(element, known)}")
         return known[element]
 
     def to_dict(self) -> dict[str, Any]:

@@ -13,7 +13,7 @@ from clutchwork.assembly.wiring import HOUSING, Wiring, wiring
 from clutchwork.base.classes import dataclass
 from clutchwork.declare.node import Work
 from clutchwork.results.gears import rows_of
-from clutchwork.results.stretches import stretches
+from clutchwork.results.locked_intervals import stretches
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from clutchwork.assembly.shared_states import state_scales
-from clutchwork.assembly.wiring import Branch, Source, Wiring
+from clutchwork.assembly.wiring import Branch, StateOwner, Wiring
 from clutchwork.declare.layout import ROW
 from clutchwork.results.channels import ACCELERATION, ANGLE, PLACE, SPEED, TORQUE
 
@@ -39,7 +39,7 @@ def numbers(wiring: Wiring) -> list[Named]:
 
 def _states(wiring: Wiring) -> Iterator[Named]:
     """States of elements and contacts, then the shared ones: heat of thermal nodes, processes."""
-    owners: list[Branch | Source] = [*wiring.elements, *wiring.contacts, *wiring.thermal]
+    owners: list[Branch | StateOwner] = [*wiring.elements, *wiring.contacts, *wiring.thermal]
     own = [(index, f"{owner.component.name}.{name}", unit) for owner in owners for name, unit, index in owner.states]
     yield from ((name, unit) for _, name, unit in sorted(own))
     for process in wiring.processes:

@@ -8,7 +8,7 @@ from fnmatch import translate
 from typing import Any
 
 from clutchwork.base.errors import UnknownName, UseError
-from clutchwork.base.shown import shown
+from clutchwork.base.quote import quote
 
 
 def chosen(wanted: Any, known: Iterable[str], fault: Callable[[str], str], call: str = "names") -> tuple[str, ...]:
@@ -27,7 +27,7 @@ def chosen(wanted: Any, known: Iterable[str], fault: Callable[[str], str], call:
     wrong = [one for one in asked if not isinstance(one, str)]
     if wrong:
         remedy = 'give strings, such as names=["c1.*", "*.speed"]'
-        raise UseError(call, [f"names: {shown(one)} is not the name of a signal; {remedy}" for one in wrong])
+        raise UseError(call, [f"names: {quote(one)} is not the name of a signal; {remedy}" for one in wrong])
     found, faults = dict[str, None](), list[str]()
     for one in asked:
         matching = meant(one, names)

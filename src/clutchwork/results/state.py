@@ -12,11 +12,11 @@ from numpy.typing import NDArray
 
 from clutchwork.base.classes import dataclass
 from clutchwork.base.errors import ClutchworkError, UseError
-from clutchwork.base.kept import kept
-from clutchwork.base.shown import shortened, shown
+from clutchwork.base.memoize import memoize
+from clutchwork.base.quote import quote, shortened
 from clutchwork.declare.calls import explained, explained_methods
 from clutchwork.declare.quantity import QuantityError, has_unit, in_si
-from clutchwork.results.held import Held, held_of, plain_held
+from clutchwork.results.external_settings import Held, held_of, plain_held
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -53,7 +53,7 @@ class State:
 
     def __repr__(self) -> str:
         size = len(self.core) + len(self.row) + len(self.left)
-        return f"<State of {shown(self.model)} at {self.time:g} s, {size / 1024:.1f} KiB>"
+        return f"<State of {quote(self.model)} at {self.time:g} s, {size / 1024:.1f} KiB>"
 
     @property
     def values(self) -> NDArray[np.float64]:
@@ -107,10 +107,10 @@ class State:
         """StateError where it is the state of another model."""
         if self.fingerprint != fingerprint(system):
             same = (
-                f"{shown(system.name)} with other numbers or signals" if self.model == system.name else "another model"
+                f"{quote(system.name)} with other numbers or signals" if self.model == system.name else "another model"
             )
             told = (
-                f"this is a state of {shown(self.model)}"
+                f"this is a state of {quote(self.model)}"
                 if self.model != system.name
                 else "this is a state of the model"
             )
@@ -120,7 +120,7 @@ class State:
             )
 
 
-@kept
+@memoize
 def fingerprint(system: System) -> str:
     """What a System is recognised by, found once."""
     # loads the library of OpenSSL
@@ -137,9 +137,9 @@ def instant(at: object, begin: float, reached: float) -> float:
         try:
             at = in_si(at, "s")
         except QuantityError as bad:
-            raise UseError("run.state", [f"at is {shown(at)}: {bad.message}; give a time in s"]) from None
+            raise UseError("run.state", [f"at is {quote(at)}: {bad.message}; give a time in s"]) from None
     if isinstance(at, bool) or not isinstance(at, Real):
-        raise UseError("run.state", [f"at is {shown(at)}: give a time in s, or nothing for the end"])
+        raise UseError("run.state", [f"at is {quote(at)}: give a time in s, or nothing for the end"])
     if not begin <= float(at) <= reached:
         raise UseError("run.state", [f"at is {float(at):g} s: the run goes from {begin:g} to {reached:g} s"])
     return float(at)

@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 
 from clutchwork.base.classes import dataclass
 from clutchwork.base.errors import ClutchworkError, OptionError
-from clutchwork.base.text import counted
+from clutchwork.base.plural import counted
 from clutchwork.declare.calls import explained, explained_methods
 from clutchwork.declare.layout import DONE, STATUSES
 from clutchwork.declare.options import Options
@@ -316,10 +316,10 @@ class Trajectory(Exports):
 
         The figure of matplotlib that it returns shows itself in a notebook. docs/guide/pictures.md
         """
-        from clutchwork.results.plot.chosen import Chosen
+        from clutchwork.results.plot.chosen import PlotArguments
         from clutchwork.results.plot.run import plot
 
-        chosen = Chosen(signals, unit, path, zoom, events, measured, units)
+        chosen = PlotArguments(signals, unit, path, zoom, events, measured, units)
         return plot(self, chosen, lockup)
 
     @explained("explore")
@@ -342,10 +342,10 @@ class Trajectory(Exports):
 
         Returns a figure of plotly.
         """
-        from clutchwork.results.plot.chosen import Chosen
+        from clutchwork.results.plot.chosen import PlotArguments
         from clutchwork.results.plot.explore import explore
 
-        return explore(self, Chosen(signals, unit, path, zoom, events, measured, units), points)
+        return explore(self, PlotArguments(signals, unit, path, zoom, events, measured, units), points)
 
     def _repr_mimebundle_(self, **_: Any) -> dict[str, Any]:
         from clutchwork.base.rich import bundle

@@ -8,11 +8,11 @@ from typing import TYPE_CHECKING, Any
 
 from clutchwork.base.classes import dataclass
 from clutchwork.base.errors import UnknownName, UseError, advised, near
-from clutchwork.base.shown import listed, shown
+from clutchwork.base.quote import listed, quote
 from clutchwork.declare.quantity import PLAIN, QuantityError, scale_to_si
-from clutchwork.declare.speech import where_signals
 from clutchwork.declare.unit_table import fitting
 from clutchwork.declare.units import Scale
+from clutchwork.declare.wording import where_signals
 
 if TYPE_CHECKING:
     from clutchwork.results.recorded import Recorded
@@ -73,7 +73,7 @@ def _checked(units: object) -> Mapping[str, str]:
         return {}
     if not isinstance(units, Mapping):
         remedy = 'give units by signal: units={"engine.speed": "rpm", "*.pressure": "bar"}'
-        raise UseError("units", [f"units is {shown(units)}: {remedy}"])
+        raise UseError("units", [f"units is {quote(units)}: {remedy}"])
     return units
 
 
@@ -99,7 +99,7 @@ def _names(pattern: object, known: Mapping[str, str]) -> list[str]:
     names = [name for name in known if fnmatchcase(name, plain)]
     if not names:
         meant = near(pattern, known, where_signals())
-        raise UnknownName(f"no signal {shown(pattern)}{meant}")
+        raise UnknownName(f"no signal {quote(pattern)}{meant}")
     return names
 
 
@@ -113,14 +113,14 @@ def _by_unit(names: Iterable[str], known: Mapping[str, str]) -> dict[str, list[s
 def _fits(unit: object, si: str) -> str:
     """A unit that fits a signal; QuantityError says what the signal has, and what it may be given in."""
     if not si:
-        raise QuantityError("the signal is a word and has no unit", shown(unit), "leave it out")
+        raise QuantityError("the signal is a word and has no unit", quote(unit), "leave it out")
     remedy = f"the signal is in [{si}]; give it in {listed(fitting(si))}" if fitting(si) else f"it is in [{si}]"
     try:
         scale_to_si(unit, si)
     except QuantityError as bad:
         message = UNFIT if bad.message.startswith("has a unit") else f"the unit {bad.message}"
-        raise QuantityError(message.replace("has the unknown unit", "is unknown:"), shown(unit), remedy) from None
+        raise QuantityError(message.replace("has the unknown unit", "is unknown:"), quote(unit), remedy) from None
     word = str(unit).strip()
     if si in MISTAKEN and word in {*fitting(MISTAKEN[si])} - {*fitting(si)}:
-        raise QuantityError(UNFIT, shown(unit), remedy)
+        raise QuantityError(UNFIT, quote(unit), remedy)
     return word

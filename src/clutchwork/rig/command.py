@@ -65,7 +65,7 @@ def rig_command(asked: argparse.Namespace) -> int:
 
 
 @dataclass(frozen=True)
-class Outcome:
+class PerformedExperiment:
     """One experiment that was performed, and the files that were written."""
 
     result: Result
@@ -90,7 +90,7 @@ class Outcome:
 
 def outcomes(
     name: str, laws: str | None, preset: str | None, settings: Sequence[str], out: Path, signals: bool
-) -> Iterator[Outcome]:
+) -> Iterator[PerformedExperiment]:
     """Perform one experiment, or all, and write what they give.
 
     Parameters: laws, names separated by commas; settings, `name=value` each; out, folder for picture and table;
@@ -101,12 +101,12 @@ def outcomes(
         fixed = name == EVERY and experiment.own_preset
         result = experiment.perform(chosen, preset=None if fixed else preset)
         files = result.save(out)
-        yield Outcome(result, (*files, *(_signals(result, out) if signals else ())))
+        yield PerformedExperiment(result, (*files, *(_signals(result, out) if signals else ())))
 
 
 def listing() -> str:
     """The experiments with their settings, the laws and the presets."""
-    from clutchwork.base.text import columns
+    from clutchwork.base.plural import columns
     from clutchwork.rig import EXPERIMENTS, PRESETS
 
     lines = ["experiments"]

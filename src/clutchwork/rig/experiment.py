@@ -18,7 +18,7 @@ from clutchwork.results.trajectory import Trajectory
 from clutchwork.rig.bench import ACCURATE, Bench
 from clutchwork.rig.chosen import Laws, chosen
 from clutchwork.rig.presets import Preset, preset_of
-from clutchwork.rig.table import Cell, Column, Table
+from clutchwork.rig.table import Cell, Table, TableColumn
 from clutchwork.rig.trial import NOT_REACHED, Runs, Trial, found
 
 if TYPE_CHECKING:
@@ -42,7 +42,7 @@ class Experiment:
         """Run every case with one law."""
         raise NotImplementedError
 
-    def columns(self, preset: Preset) -> tuple[Column, ...]:
+    def columns(self, preset: Preset) -> tuple[TableColumn, ...]:
         """What `measure` gives, after the column with the law."""
         raise NotImplementedError
 
@@ -63,7 +63,7 @@ class Experiment:
             numbers = [NOT_REACHED] * len(heads) if left_out else self.measure(trial)
             lines.append([label, *numbers, trial.note])
         noted = any(line[-1] for line in lines)
-        columns = (Column("law"), *heads, *([Column("note")] if noted else []))
+        columns = (TableColumn("law"), *heads, *([TableColumn("note")] if noted else []))
         return Table(columns, tuple(tuple(line if noted else line[:-1]) for line in lines))
 
     def perform(self, laws: Laws = None, *, preset: str | Preset | None = None, options: Options = ACCURATE) -> Result:

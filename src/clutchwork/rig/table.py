@@ -10,14 +10,14 @@ from typing import Any, TypeAlias
 from clutchwork.base.classes import dataclass
 from clutchwork.base.errors import near
 from clutchwork.base.paths import fitting
-from clutchwork.base.text import columns
+from clutchwork.base.plural import columns
 from clutchwork.base.writing import put_csv
 
 Cell: TypeAlias = "float | str"
 
 
 @dataclass(frozen=True)
-class Column:
+class TableColumn:
     """Head of a column: what it holds and its unit; empty for words."""
 
     name: str
@@ -33,7 +33,7 @@ class Column:
 class Table:
     """Lines of numbers and words under named columns; print it to read it. NaN stands for what was not reached."""
 
-    columns: tuple[Column, ...]
+    columns: tuple[TableColumn, ...]
     lines: tuple[tuple[Cell, ...], ...]
 
     def __getitem__(self, name: str) -> list[Cell]:
@@ -73,7 +73,7 @@ class Table:
 
 def words(head: str, lines: Sequence[tuple[str, str]]) -> Table:
     """A table of two columns of words."""
-    return Table((Column(head), Column("what it is")), tuple(lines))
+    return Table((TableColumn(head), TableColumn("what it is")), tuple(lines))
 
 
 def _read(cell: Cell) -> str:

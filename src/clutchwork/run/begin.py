@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from clutchwork.base.shown import shown
+from clutchwork.base.quote import quote
 from clutchwork.declare.core import core
 from clutchwork.declare.layout import DONE, EVENTS_FULL, ROWS_FULL
 from clutchwork.declare.options import Options
@@ -15,7 +15,7 @@ if TYPE_CHECKING:
     from collections.abc import Mapping
 
     from clutchwork.assembly.system import System
-    from clutchwork.results.held import Held
+    from clutchwork.results.external_settings import Held
     from clutchwork.results.state import State
 
 # budgets of a run count what it does itself
@@ -47,11 +47,11 @@ def put(run: Any, system: System, state: State) -> None:
     try:
         run.restore(state.core)
     except ValueError:
-        run_time = f"the state of {shown(state.model)} at {state.time:g} s"
+        run_time = f"the state of {quote(state.model)} at {state.time:g} s"
         raise StateError(f"{run_time} is damaged, or of another version of clutchwork: save it again") from None
     size = 8 * run.row_size
     if run.time != state.time or len(state.row) != size or len(state.left) not in (0, size):
-        raise StateError(f"the state of {shown(state.model)} at {state.time:g} s is damaged: save it again")
+        raise StateError(f"the state of {quote(state.model)} at {state.time:g} s is damaged: save it again")
 
 
 def choose(run: Any, options: Options) -> None:

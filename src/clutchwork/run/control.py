@@ -16,7 +16,7 @@ if TYPE_CHECKING:
 
     from clutchwork.assembly.records import Input
     from clutchwork.results.channels import Channels
-    from clutchwork.results.held import Held
+    from clutchwork.results.external_settings import Held
 
 
 @dataclass(frozen=True)

@@ -8,14 +8,14 @@ import numpy as np
 from numpy.typing import NDArray
 
 from clutchwork.base.errors import OptionError
-from clutchwork.base.shown import shown
+from clutchwork.base.quote import quote
 from clutchwork.declare.options import Options, instants
 
 
 def output_grid(options: Options, t_end: float) -> NDArray[np.float64] | None:
     """The wanted output instants [s], or None when the solver's steps decide."""
     if options.dt is not None:
-        from clutchwork.results.raster import uniform
+        from clutchwork.results.time_grid import uniform
 
         return uniform(options.dt, options.t_start, t_end)
     return None if options.times is None else _given(options.times, options.t_start, t_end)
@@ -26,7 +26,7 @@ def _given(times: Sequence[float] | NDArray[np.float64], begin: float, t_end: fl
     try:
         grid = np.array(given, dtype=float)
     except (TypeError, ValueError):
-        raise OptionError([f"times are {shown(times)}: they must be a sequence of numbers [s]"]) from None
+        raise OptionError([f"times are {quote(times)}: they must be a sequence of numbers [s]"]) from None
     if grid.ndim != 1 or grid.size == 0:
         raise OptionError(["times must hold at least one instant"])
     if not np.all(np.isfinite(grid)) or np.any(np.diff(grid) < 0.0):

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
-from clutchwork.base.kept import kept
+from clutchwork.base.memoize import memoize
 from clutchwork.signals.bases.waveform import piece_value
 
 if TYPE_CHECKING:
@@ -26,7 +26,7 @@ def jump_times(system: System, begin: float, t_end: float) -> NDArray[np.float64
     return np.array(sorted(found))
 
 
-@kept
+@memoize
 def _jumping(system: System) -> tuple[tuple[list[float], float], ...]:
     """Of each signal that jumps the instants at which it first does, and the period of those that repeat, 0: never."""
     found = ((_jumps(item.signal), item.signal.repeats()) for item in system.inputs)

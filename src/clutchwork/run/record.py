@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from clutchwork.declare.layout import DONE, EVENT, EVENTS_FULL, INTERRUPTED, ROWS_FULL
 
 if TYPE_CHECKING:
-    from clutchwork.run.course import Course
+    from clutchwork.run.input_schedule import Schedule
 
 Array = NDArray[np.float64]
 Progress = Callable[[float, float], None]
@@ -81,7 +81,7 @@ def _joined(parts: list[Array], nothing: Array) -> Array:
     return parts[0] if len(parts) == 1 else np.concatenate([nothing, *parts])
 
 
-def record(recording: Recording, t_end: float, grid: Array | None, course: Course, progress: Told | None) -> None:
+def record(recording: Recording, t_end: float, grid: Array | None, course: Schedule, progress: Told | None) -> None:
     """Run to the end, or until the core stops; a grid of None records the solver's steps."""
     run = recording.run
     start = begin = run.time

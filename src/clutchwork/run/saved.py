@@ -19,12 +19,12 @@ from clutchwork.base import archive
 from clutchwork.base.classes import dataclass
 from clutchwork.base.errors import ClutchworkError, ModelWarning
 from clutchwork.base.paths import path_of
+from clutchwork.base.quote import listed, shortened
 from clutchwork.base.regular import reason
-from clutchwork.base.shown import listed, shortened
 from clutchwork.declare.calls import explained
 from clutchwork.declare.layout import MODES, STATUSES
 from clutchwork.declare.options import Options
-from clutchwork.declare.speech import say
+from clutchwork.declare.wording import say
 from clutchwork.results.channels import channels
 from clutchwork.results.events import Event, Events
 from clutchwork.results.exchange.content import program
@@ -32,7 +32,7 @@ from clutchwork.results.exchange.saved import FORMAT, MOST_BYTES, RUN_PARTS, Run
 from clutchwork.results.state import State
 from clutchwork.results.trajectory import Trajectory
 from clutchwork.run.control import Control
-from clutchwork.run.course import Course, Tape
+from clutchwork.run.input_schedule import Schedule, Tape
 from clutchwork.run.simulation import Job
 
 Array = NDArray[np.float64]
@@ -67,7 +67,7 @@ def load_run(path: str | Path) -> Trajectory:
     """
     path_of("cw.load_run", path, "run.cwrun")
     try:
-        parts = archive.Parts(path, RUN_PARTS, MOST_BYTES)
+        parts = archive.ArchiveParts(path, RUN_PARTS, MOST_BYTES)
         return _made(_about(parts.probable("run"), path), parts, path)
     except RunFormatError:
         raise
@@ -94,7 +94,7 @@ def _about(data: bytes, path: str | Path) -> Mapping[str, Any]:
     return about
 
 
-def _made(about: Mapping[str, Any], parts: archive.Parts, path: str | Path) -> Trajectory:
+def _made(about: Mapping[str, Any], parts: archive.ArchiveParts, path: str | Path) -> Trajectory:
     times, events, tape, head, core, row, left, *model = (parts.probable(name) for name in NAMED)
     system, options, end = _system(about, model, path), Options(**about["options"]), _end(about["t_end"])
     # one that was never stepped ends where it begins
@@ -128,7 +128,7 @@ def _end(given: Any) -> float:
     return float(given)
 
 
-def _course(system: System, tape: bytes, start: State | None) -> Course:
+def _course(system: System, tape: bytes, start: State | None) -> Schedule:
     """What was done to the run: the steps of one that was stepped, else what is held since the state at its begin."""
     if tape:
         return Tape.of_plain(json.loads(tape), len(system.inputs), len(system.arrays["params"]))
@@ -150,7 +150,7 @@ def _system(about: Mapping[str, Any], model: list[bytes], path: str | Path) -> S
         raise RunFormatError(f"{path}: its model cannot be used: {error} ({by}); {remedy}") from None
 
 
-def _rows(system: System, parts: archive.Parts, count: int) -> Array:
+def _rows(system: System, parts: archive.ArchiveParts, count: int) -> Array:
     wires = wiring(system)
     # nothing that does not fit is unpacked
     if parts.size("rows") != 8 * count * wires.row_size:

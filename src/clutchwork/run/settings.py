@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 from clutchwork.base.errors import OptionError
 from clutchwork.declare.options import DEFAULTS, Options, end_time, known
-from clutchwork.declare.speech import say
+from clutchwork.declare.wording import say
 
 if TYPE_CHECKING:
     from clutchwork.assembly.records import Input

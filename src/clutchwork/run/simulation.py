@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 from clutchwork.assembly.system import System
 from clutchwork.base.classes import dataclass
 from clutchwork.base.errors import OptionError, UseError, caller
-from clutchwork.base.shown import shown
+from clutchwork.base.quote import quote
 from clutchwork.declare.calls import explained
 from clutchwork.declare.layout import DONE, INTERRUPTED, NOT_FINITE, STATUSES
 from clutchwork.declare.options import Options, instants
@@ -34,7 +34,7 @@ if TYPE_CHECKING:
     from clutchwork.declare.option_fields import OptionFields
     from clutchwork.results.channels import Channels
     from clutchwork.results.state import State
-    from clutchwork.run.course import Course
+    from clutchwork.run.input_schedule import Schedule
 
 Array = NDArray[np.float64]
 
@@ -53,7 +53,7 @@ class Job:
     system: System
     t_end: float
     options: Options
-    course: Course
+    course: Schedule
     start: State | None = None
 
     @property
@@ -155,7 +155,7 @@ def _channels(system: System) -> Channels:
 def model_of(call: str, model: Assembles | System, options: object = None) -> System:
     """The System of a model; UseError where it is none, or where options are none."""
     if options is not None and not isinstance(options, Options):
-        raise UseError(call, [f"options is {shown(options)}: it must be cw.Options(...)"])
+        raise UseError(call, [f"options is {quote(options)}: it must be cw.Options(...)"])
     if not isinstance(model, System) and not hasattr(model, "assemble"):
         raise UseError(call, [_no_model(model)])
     return model if isinstance(model, System) else model.assemble()
@@ -167,7 +167,7 @@ def begin_of(system: System, start: object, given: Mapping[str, Any]) -> dict[st
 
     if not isinstance(start, State):
         remedy = "give what sim.save(), run.state() or cw.State.load(path) returned"
-        raise UseError("simulate", [f"start is {shown(start)}: {remedy}"])
+        raise UseError("simulate", [f"start is {quote(start)}: {remedy}"])
     if given.get("t_start") is not None:
         raise OptionError(
             [f"t_start cannot be given beside start: the state is at {start.time:g} s; leave t_start out"]
@@ -180,7 +180,7 @@ def _no_model(given: object) -> str:
     remedy = "give a Driveline or a System"
     if isinstance(given, str | os.PathLike):
         remedy = f"load a file with cw.Driveline.load({os.fspath(given)!r})"
-    return f"{shown(given)} is not a model; {remedy}"
+    return f"{quote(given)} is not a model; {remedy}"
 
 
 def trajectory(job: Job, progress: Told | None) -> Trajectory:

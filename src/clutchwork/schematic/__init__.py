@@ -1,1 +1,1 @@
-"""Schematics: a driveline with the symbols of the field, laid out by itself."""
+"""Schematics of drivelines in the symbols of the field, laid out automatically."""

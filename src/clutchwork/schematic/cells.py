@@ -19,10 +19,10 @@ from clutchwork.schematic.look import (
     VALUE,
     WARM,
     WRONG,
-    Look,
+    MarkStyle,
 )
-from clutchwork.schematic.moment import Moment
-from clutchwork.schematic.pen import Box, Mark, Pen, Text, around
+from clutchwork.schematic.moment import Snapshot
+from clutchwork.schematic.pen import Mark, Rect, SymbolPen, Text, around
 from clutchwork.schematic.symbols.heat import AMBIENT, CAPACITY, SOURCE
 from clutchwork.schematic.symbols.symbol import LEFT, RIGHT, Drawn, Symbol
 from clutchwork.schematic.symbols.table import symbol_of
@@ -34,7 +34,7 @@ NOW = "#00497A"  # numbers of a run
 
 
 @dataclass(frozen=True, eq=False)
-class Piece:
+class SymbolCell:
     """One symbol with its marks and text, about an origin."""
 
     name: str
@@ -48,14 +48,14 @@ class Cell:
     """A thing and its helpers, about the middle of the symbol of the thing."""
 
     thing: Thing
-    pieces: list[tuple[Piece, float, float]]
+    pieces: list[tuple[SymbolCell, float, float]]
     links: list[Mark]  # lines within the cell
-    box: Box
+    box: Rect
     half: float  # pt from the middle to its pins
     pins: Mapping[str, tuple[int, float]]  # port -> side and height; a node has none, its lines end at 0
 
 
-def line_of(node: Thing) -> Look:
+def line_of(node: Thing) -> MarkStyle:
     """The look of what is attached to a node."""
     if node.what in ("thermal", "ambient", "element"):
         return HEAT
@@ -65,15 +65,15 @@ def line_of(node: Thing) -> Look:
     return HEAT if heat else SHAFT
 
 
-def cell_of(thing: Thing, sides: Mapping[str, int], moment: Moment, *, values: bool = True) -> Cell:
+def cell_of(thing: Thing, sides: Mapping[str, int], moment: Snapshot, *, values: bool = True) -> Cell:
     """The cell of a node or of an element whose ports are on the given sides."""
     if thing.is_node:
         return _node_cell(thing, moment, values)
     return _element_cell(thing, sides, moment, values)
 
 
-def _node_cell(thing: Thing, moment: Moment, values: bool) -> Cell:
-    pen, source = Pen(), thing.source
+def _node_cell(thing: Thing, moment: Snapshot, values: bool) -> Cell:
+    pen, source = SymbolPen(), thing.source
     half = 7.0
     if thing.what in ("thermal", "ambient"):
         symbol = symbol_of(source) if hasattr(source, "kind") else AMBIENT if thing.what == "ambient" else CAPACITY
@@ -86,7 +86,7 @@ def _node_cell(thing: Thing, moment: Moment, values: bool) -> Cell:
     elif thing.what == "mass":
         half = 15.0
         pen.line((-half, 0.0), (half, 0.0), look=MASS)
-        pen.box(-11.0, -9.0, 11.0, 9.0, look=Look(MASS.colour, 1.2, "#DCEBE5"))
+        pen.box(-11.0, -9.0, 11.0, 9.0, look=MarkStyle(MASS.colour, 1.2, "#DCEBE5"))
     else:
         pen.line((-half, 0.0), (half, 0.0), look=SHAFT)
         if getattr(source, "inertia", 0.0):
@@ -100,12 +100,12 @@ def _node_cell(thing: Thing, moment: Moment, values: bool) -> Cell:
     return Cell(thing, [(piece, 0.0, 0.0)], [], around(marks), half, {})
 
 
-def _element_cell(thing: Thing, sides: Mapping[str, int], moment: Moment, values: bool) -> Cell:
+def _element_cell(thing: Thing, sides: Mapping[str, int], moment: Snapshot, values: bool) -> Cell:
     symbol = SOURCE if thing.what == "heat" else symbol_of(thing.source)
     mirrored = _mirrored(thing, sides, symbol)
     heights = {port: symbol.heights(thing.source).get(port, 0.0) for port in (*thing.pins, *thing.fixed)}
     heights |= {port: -symbol.down - 6.0 * (number + 1) for number, port in enumerate(thing.inner)}
-    pen = Pen(mirrored=mirrored)
+    pen = SymbolPen(mirrored=mirrored)
     if thing.what == "heat":
         shown = Drawn(thing.source, _flip(sides, mirrored), half=symbol.half)
         symbol.draw(pen, shown)
@@ -126,13 +126,13 @@ def _element_cell(thing: Thing, sides: Mapping[str, int], moment: Moment, values
 
 def _element_piece(
     thing: Thing,
-    pen: Pen,
+    pen: SymbolPen,
     symbol: Symbol,
     sides: Mapping[str, int],
     heights: Mapping[str, float],
-    moment: Moment,
+    moment: Snapshot,
     values: bool,
-) -> Piece:
+) -> SymbolCell:
     nodes = list(thing.pins.values())
     line = line_of(nodes[0]) if nodes else SHAFT
     shown = Drawn(
@@ -170,16 +170,16 @@ def _add_helpers(
     thing: Thing,
     top: float,
     x: float,
-    made: list[tuple[Piece, float, float]],
+    made: list[tuple[SymbolCell, float, float]],
     links: list[Mark],
-    moment: Moment,
+    moment: Snapshot,
     values: bool,
 ) -> None:
     """Processes above what they drive, side by side, each with a dotted line to it."""
     pieces = [(helper, _helper_piece(helper, moment, values)) for helper in thing.helpers]
     boxes = [around([*piece.marks, *piece.text]) for _, piece in pieces]
     wide = sum(box.right - box.left for box in boxes) + APART * (len(boxes) - 1)
-    left, pen = x - wide / 2, Pen()
+    left, pen = x - wide / 2, SymbolPen()
     for (helper, piece), box in zip(pieces, boxes, strict=True):
         symbol = around(piece.marks)
         at = (left - box.left, top + 12.0 - symbol.low)
@@ -196,9 +196,9 @@ def _add_helpers(
     links += pen.marks
 
 
-def _helper_piece(helper: Thing, moment: Moment, values: bool) -> Piece:
+def _helper_piece(helper: Thing, moment: Snapshot, values: bool) -> SymbolCell:
     """A process with all its text above it."""
-    symbol, pen = symbol_of(helper.source), Pen()
+    symbol, pen = symbol_of(helper.source), SymbolPen()
     symbol.draw(pen, Drawn(helper.source, {}, half=symbol.half))
     now = moment.element_lines(helper)
     lines = element_values(helper) if values and not now else []
@@ -207,12 +207,12 @@ def _helper_piece(helper: Thing, moment: Moment, values: bool) -> Piece:
         texts.append(Text(0.0, y, line, VALUE, NOW if line in now else GREY, False))
         y += LINE
     texts.append(Text(0.0, y, helper.name, NAME, INK.colour, True))
-    return Piece(helper.name, helper.what, pen.marks, texts)
+    return SymbolCell(helper.name, helper.what, pen.marks, texts)
 
 
 def _labelled(
     thing: Thing, marks: list[Mark], lines: list[str], now: list[str], colour: str, *, below: bool, prefix: str = ""
-) -> Piece:
+) -> SymbolCell:
     """A symbol with its name above and its numbers below, or all of it below."""
     box = around(marks)
     name = prefix + thing.name
@@ -227,4 +227,4 @@ def _labelled(
     for number, line in enumerate([*lines, *now]):
         y -= 0.78 * VALUE if number == 0 else LINE
         texts.append(Text(0.0, y, line, VALUE, NOW if number >= len(lines) else colour, False))
-    return Piece(thing.name, thing.what, marks, texts)
+    return SymbolCell(thing.name, thing.what, marks, texts)

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 from clutchwork.base import shell
 from clutchwork.base.errors import ModelError, ModelWarning
 from clutchwork.declare.quantity import in_si
-from clutchwork.declare.speech import words_of_files
+from clutchwork.declare.wording import words_of_files
 
 if TYPE_CHECKING:
     from clutchwork.model.model import Model

@@ -7,7 +7,7 @@ from dataclasses import field
 from typing import Any, NamedTuple
 
 from clutchwork.base.classes import dataclass
-from clutchwork.base.shown import printable, shortened
+from clutchwork.base.quote import printable, shortened
 from clutchwork.declare.node import Component, HeatFlow, Node, Rate, ThermalNode
 from clutchwork.declare.schema import Role, inputs, specs
 from clutchwork.model.components import component_problems
@@ -41,7 +41,7 @@ class Thing:
 
 
 @dataclass(frozen=True, eq=False)
-class Diagram:
+class SymbolGraph:
     """All symbols of a driveline, in order."""
 
     name: str
@@ -64,12 +64,12 @@ def label(name: object, longest: int = LONGEST) -> str:
     return text if text.strip() else "?"
 
 
-def diagram(model: Model) -> Diagram:
+def diagram(model: Model) -> SymbolGraph:
     """The diagram of a model, whatever its mistakes."""
-    return _Reader(model).read()
+    return _GraphBuilder(model).read()
 
 
-class _Reader:
+class _GraphBuilder:
     """Finds the node of each port, and makes one for those that are missing."""
 
     def __init__(self, model: Model) -> None:
@@ -79,7 +79,7 @@ class _Reader:
         self._heats: list[Thing] = []
         self._inner: dict[str, str] = {}  # shafts inside of composites, and who has them
 
-    def read(self) -> Diagram:
+    def read(self) -> SymbolGraph:
         """Everything of the model."""
         model = self._model
         for node in model.nodes:
@@ -94,7 +94,7 @@ class _Reader:
         placed = _assisted(elements)
         found = [thing for thing in elements if id(thing) not in placed]
         nodes = [*self._nodes.values(), *self._missing.values()]
-        return Diagram(label(model.name, TITLE), list(dict.fromkeys([*nodes, *found, *self._heats])))
+        return SymbolGraph(label(model.name, TITLE), list(dict.fromkeys([*nodes, *found, *self._heats])))
 
     def _thermal(self, node: ThermalNode) -> Thing:
         what = "ambient" if node.capacity is None else "thermal"

@@ -9,11 +9,11 @@ from typing import TYPE_CHECKING, Any
 
 from clutchwork.base.errors import UseError
 from clutchwork.base.paths import path_fault
-from clutchwork.base.shown import shown
+from clutchwork.base.quote import quote
 from clutchwork.declare.quantity import QuantityError, in_si
 from clutchwork.model.model import Model
 from clutchwork.schematic.diagram import diagram
-from clutchwork.schematic.moment import Moment, instant
+from clutchwork.schematic.moment import Snapshot, instant
 from clutchwork.schematic.picture import Schematic, kind_of
 from clutchwork.schematic.sheet import sheet
 
@@ -41,7 +41,7 @@ def drawn(
     if problems:
         raise UseError("draw", problems)
     found = diagram(model)
-    moment = Moment()
+    moment = Snapshot()
     if run is not None:
         moment = instant(run, float(run.time[-1]) if time is None else float(time), power=power)
     made = Schematic(found.name, sheet(found, moment, values=values, width=width * POINTS), moment.time)
@@ -60,22 +60,22 @@ def _seconds(at: Any) -> Any:
 
 def _width_problems(width: Any) -> Any:
     if not isinstance(width, Real) or isinstance(width, bool) or not 20.0 <= float(width) < inf:
-        yield f"width is {shown(width)}: give a number of at least 20 mm"
+        yield f"width is {quote(width)}: give a number of at least 20 mm"
 
 
 def _problems(model: Model, path: Any, run: Any, at: Any) -> Any:
     if hasattr(path, "events"):
-        yield f"{shown(path)} is not a path; give the run by name: run=..."
+        yield f"{quote(path)} is not a path; give the run by name: run=..."
     elif path is not None and (fault := path_fault(path, "driveline.svg")):
         yield fault
     elif path is not None and not kind_of(path):
-        yield f"{shown(str(path))} does not say the format: end it with .svg, .png or .pdf"
+        yield f"{quote(str(path))} does not say the format: end it with .svg, .png or .pdf"
     if run is None:
         if at is not None:
-            yield f"at is {shown(at)}, but there is no run to show: give run=d.simulate(...)"
+            yield f"at is {quote(at)}, but there is no run to show: give run=d.simulate(...)"
         return
     if not (hasattr(run, "events") and hasattr(run, "wiring")):
-        yield f"run is {shown(run)}: give what d.simulate(...) returned"
+        yield f"run is {quote(run)}: give what d.simulate(...) returned"
         return
     if not len(run):
         yield f"the run has no instant to show: {run.message}"
@@ -84,11 +84,11 @@ def _problems(model: Model, path: Any, run: Any, at: Any) -> Any:
     names = [node.name for node in run.wiring.nodes]
     missing = [name for name in names if name not in known and not name.startswith(inner)]
     if missing:
-        yield f"the run is of another driveline, which has {shown(missing[0])}: draw that one, or cw.draw(run)"
+        yield f"the run is of another driveline, which has {quote(missing[0])}: draw that one, or cw.draw(run)"
     if at is None:
         return
     if not isinstance(at, Real) or isinstance(at, bool) or not isfinite(float(at)):
-        yield f"at is {shown(at)}: give one time in s"
+        yield f"at is {quote(at)}: give one time in s"
         return
     # one that got to its end is repeated for any instant
     begin, end = (run.options.t_start, run.t_end) if run.finished else (run.time[0], run.time[-1])

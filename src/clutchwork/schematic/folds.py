@@ -5,12 +5,12 @@ from __future__ import annotations
 from math import ceil
 
 from clutchwork.schematic.layers import Layers
-from clutchwork.schematic.places import Places
+from clutchwork.schematic.places import Coordinates
 
 WIDE = 880.0  # pt
 
 
-def folds(layers: Layers, places: Places, width: float = WIDE) -> list[int]:
+def folds(layers: Layers, places: Coordinates, width: float = WIDE) -> list[int]:
     """The first layers of the second row and of those behind; none where all fits, or nothing can be cut."""
     first, last = places.x[0], places.x[-1]
     count = ceil((last - first) / width) if width > 0.0 else 1

@@ -19,7 +19,7 @@ PASS = 5.0  # pt that a passing line needs above and below
 
 @dataclass(frozen=True, eq=False)
 class Spot:
-    """What stands in a layer: a cell, or a line that passes."""
+    """A position in a layer: a cell, or a line that passes through."""
 
     number: int
     layer: int
@@ -37,7 +37,7 @@ class End:
 
 
 @dataclass(frozen=True, eq=False)
-class Lines:
+class NodeLines:
     """The lines of one node between a layer and the next: from its trunk to all others."""
 
     node: Thing
@@ -58,7 +58,7 @@ class Layers:
     """All spots and lines of one connected part."""
 
     spots: list[Spot]
-    lines: list[Lines]
+    lines: list[NodeLines]
     count: int  # of layers
 
 
@@ -135,5 +135,5 @@ def _lines(
                 following.append((End(len(spots) - 1), 1.0 + rest))
             others = [end for end, _ in following]
             sides = ([trunk], others) if way > 0 else (others, [trunk])
-            yield Lines(node, min(at, at + way), trunk, *sides, dict(following))
+            yield NodeLines(node, min(at, at + way), trunk, *sides, dict(following))
             trunk, at = End(len(spots) - 1) if at + way != last else trunk, at + way

@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import NamedTuple
 
 
-class Look(NamedTuple):
+class MarkStyle(NamedTuple):
     """How a mark is drawn."""
 
     colour: str = "#1A1A1A"
@@ -14,29 +14,29 @@ class Look(NamedTuple):
     dash: str = "solid"
 
 
-INK = Look()
-THIN = Look(width=0.6)
-SHAFT = Look(width=1.4)
-PLATE = Look(width=2.2)
-BODY = Look(fill="#DDE3EA", width=1.0)
-BLANK = Look(fill="#FFFFFF", width=1.0)
+INK = MarkStyle()
+THIN = MarkStyle(width=0.6)
+SHAFT = MarkStyle(width=1.4)
+PLATE = MarkStyle(width=2.2)
+BODY = MarkStyle(fill="#DDE3EA", width=1.0)
+BLANK = MarkStyle(fill="#FFFFFF", width=1.0)
 PAPER = "#FFFFFF"
 GREY = "#5A5A5A"
-MASS = Look(colour="#0B5D46", width=1.4)
-HEAT = Look(colour="#B3261E", width=1.0, dash="dash")
-WARM = Look(colour="#B3261E", width=1.0)
-SIGNAL = Look(colour="#6A3D9A", width=0.9, dash="dot")
-SIGNAL_BODY = Look(colour="#6A3D9A", width=0.9)
-WRONG = Look(colour="#C2185B", width=1.0, dash="dash")
+MASS = MarkStyle(colour="#0B5D46", width=1.4)
+HEAT = MarkStyle(colour="#B3261E", width=1.0, dash="dash")
+WARM = MarkStyle(colour="#B3261E", width=1.0)
+SIGNAL = MarkStyle(colour="#6A3D9A", width=0.9, dash="dot")
+SIGNAL_BODY = MarkStyle(colour="#6A3D9A", width=0.9)
+WRONG = MarkStyle(colour="#C2185B", width=1.0, dash="dash")
 
 LOCKED, SLIPPING, OPEN = "locked", "slipping", "open"
 STATES = (LOCKED, SLIPPING, OPEN)
 # lines of a contact by its state, and the ground behind it
 STATE = {
     "": INK,
-    LOCKED: Look(colour="#00497A"),
-    SLIPPING: Look(colour="#C04A00"),
-    OPEN: Look(colour="#8A8A8A"),
+    LOCKED: MarkStyle(colour="#00497A"),
+    SLIPPING: MarkStyle(colour="#C04A00"),
+    OPEN: MarkStyle(colour="#8A8A8A"),
 }
 HALO = {LOCKED: "#CFE6F7", SLIPPING: "#FCE4D0"}
 

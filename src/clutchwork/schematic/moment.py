@@ -21,7 +21,7 @@ if TYPE_CHECKING:
 NOTHING = 1e-9  # in SI units: what rounding leaves of zero
 
 
-class Moment:
+class Snapshot:
     """Nothing is known of a run: no states and no values."""
 
     time: float | None = None
@@ -44,7 +44,7 @@ class Moment:
 
 
 @dataclass(frozen=True, eq=False)
-class Instant(Moment):
+class RunSnapshot(Snapshot):
     """One row of a run."""
 
     run: Recorded
@@ -129,7 +129,7 @@ class Instant(Moment):
         )
 
 
-def instant(run: Recorded, at: float, *, power: bool = False) -> Instant:
+def instant(run: Recorded, at: float, *, power: bool = False) -> RunSnapshot:
     """The instant `at` [s] of a run; the run is repeated for it where it was not recorded."""
     there = np.flatnonzero(run.time == at)
     # an instant that was recorded twice has the values after its event last
@@ -138,4 +138,4 @@ def instant(run: Recorded, at: float, *, power: bool = False) -> Instant:
         there = np.array([len(run) - 1])
     if not len(there):
         there = np.array([int(np.argmin(np.abs(run.time - at)))])
-    return Instant(run, at, int(there[-1]), power)
+    return RunSnapshot(run, at, int(there[-1]), power)

@@ -6,7 +6,7 @@ from collections.abc import Iterable, Sequence
 
 from clutchwork.base.html import page, table
 from clutchwork.model.model import Model
-from clutchwork.schematic.diagram import Diagram, Thing, diagram
+from clutchwork.schematic.diagram import SymbolGraph, Thing, diagram
 from clutchwork.schematic.draw import drawn
 from clutchwork.schematic.values import element_values, node_values
 
@@ -23,7 +23,7 @@ def html(model: Model) -> str:
     return page(picture, tables(found))
 
 
-def tables(found: Diagram) -> str:
+def tables(found: SymbolGraph) -> str:
     """Shafts and elements of a diagram."""
     nodes = [(node.name, node.what, ", ".join(node_values(node))) for node in found.nodes]
     elements = [

@@ -26,10 +26,10 @@ class _Line:
 
 def ordered(layers: Layers) -> list[list[int]]:
     """The spots of each layer from top to bottom."""
-    return _Search(layers).best()
+    return _OrderSearch(layers).best()
 
 
-class _Search:
+class _OrderSearch:
     """Sweeps over the layers, each sorted by where its neighbours are, then by exchanging neighbours."""
 
     def __init__(self, layers: Layers) -> None:
@@ -68,7 +68,7 @@ class _Search:
         return best
 
     def _sorted(self, order: list[list[int]], layer: int, down: bool) -> list[int]:
-        """A layer by the middle of the neighbours of each spot; those without stay where they are."""
+        """A layer sorted by the mean height of each spot's neighbours; spots without neighbours keep their place."""
         lines = self.between[layer - 1] if down else self.between[layer]
         place = self._places(order[layer - 1 if down else layer + 1])
         wanted: dict[int, list[float]] = {}

@@ -8,12 +8,12 @@ from math import cos, pi, sin
 from typing import NamedTuple
 
 from clutchwork.base.extras import need
-from clutchwork.schematic.look import INK, THIN, Look
+from clutchwork.schematic.look import INK, THIN, MarkStyle
 
 Point = tuple[float, float]
 
 
-class Box(NamedTuple):
+class Rect(NamedTuple):
     """A rectangle [pt]."""
 
     left: float
@@ -21,16 +21,16 @@ class Box(NamedTuple):
     right: float
     high: float
 
-    def overlaps(self, other: Box, by: float = 0.0) -> bool:
+    def overlaps(self, other: Rect, by: float = 0.0) -> bool:
         """Whether the two have more in common than a rim of width `by`."""
         return (
             min(self.right, other.right) - max(self.left, other.left) > by
             and min(self.high, other.high) - max(self.low, other.low) > by
         )
 
-    def moved(self, x: float, y: float) -> Box:
+    def moved(self, x: float, y: float) -> Rect:
         """The same elsewhere."""
-        return Box(self.left + x, self.low + y, self.right + x, self.high + y)
+        return Rect(self.left + x, self.low + y, self.right + x, self.high + y)
 
 
 class Stroke(NamedTuple):
@@ -38,13 +38,13 @@ class Stroke(NamedTuple):
 
     points: tuple[Point, ...]
     closed: bool
-    look: Look
+    look: MarkStyle
 
     @property
-    def box(self) -> Box:
+    def box(self) -> Rect:
         """What it covers."""
         xs, ys = [x for x, _ in self.points], [y for _, y in self.points]
-        return Box(min(xs), min(ys), max(xs), max(ys))
+        return Rect(min(xs), min(ys), max(xs), max(ys))
 
     def moved(self, x: float, y: float) -> Stroke:
         """The same elsewhere."""
@@ -62,10 +62,10 @@ class Text(NamedTuple):
     bold: bool
 
     @property
-    def box(self) -> Box:
+    def box(self) -> Rect:
         """What it covers."""
         half = 0.5 * width_of(self.text, self.size, self.bold)
-        return Box(self.x - half, self.y - 0.24 * self.size, self.x + half, self.y + 0.78 * self.size)
+        return Rect(self.x - half, self.y - 0.24 * self.size, self.x + half, self.y + 0.78 * self.size)
 
     def moved(self, x: float, y: float) -> Text:
         """The same elsewhere."""
@@ -75,34 +75,34 @@ class Text(NamedTuple):
 Mark = Stroke | Text
 
 
-class Pen:
+class SymbolPen:
     """Collects marks; a mirrored one exchanges left and right of all but text."""
 
     def __init__(self, *, mirrored: bool = False) -> None:
         self.marks: list[Mark] = []
         self.sign = -1.0 if mirrored else 1.0
 
-    def line(self, *points: Point, look: Look = INK, closed: bool = False) -> None:
+    def line(self, *points: Point, look: MarkStyle = INK, closed: bool = False) -> None:
         """A line through points."""
         self.marks.append(Stroke(tuple((self.sign * x, y) for x, y in points), closed, look))
 
-    def area(self, *points: Point, look: Look = INK) -> None:
+    def area(self, *points: Point, look: MarkStyle = INK) -> None:
         """A closed line."""
         self.line(*points, look=look, closed=True)
 
-    def box(self, left: float, low: float, right: float, high: float, look: Look = INK) -> None:
+    def box(self, left: float, low: float, right: float, high: float, look: MarkStyle = INK) -> None:
         """A rectangle."""
         self.area((left, low), (right, low), (right, high), (left, high), look=look)
 
-    def circle(self, x: float, y: float, radius: float, look: Look = INK) -> None:
+    def circle(self, x: float, y: float, radius: float, look: MarkStyle = INK) -> None:
         """A circle."""
         self.area(*_round(x, y, radius, 0.0, 2.0 * pi)[:-1], look=look)
 
-    def arc(self, x: float, y: float, radius: float, start: float, end: float, look: Look = INK) -> None:
+    def arc(self, x: float, y: float, radius: float, start: float, end: float, look: MarkStyle = INK) -> None:
         """A part of a circle between two angles [rad]."""
         self.line(*_round(x, y, radius, start, end), look=look)
 
-    def arrow(self, tip: Point, direction: Point, size: float = 3.6, look: Look = INK) -> None:
+    def arrow(self, tip: Point, direction: Point, size: float = 3.6, look: MarkStyle = INK) -> None:
         """A filled head; `direction` has the length 1."""
         (x, y), (a, b) = tip, direction
         back = (x - size * a, y - size * b)
@@ -128,7 +128,7 @@ class Pen:
             x = left + number * step
             self.line((x, y - 3.6), (x + step, y), look=THIN)
 
-    def hatched(self, left: float, low: float, right: float, high: float, look: Look = THIN) -> None:
+    def hatched(self, left: float, low: float, right: float, high: float, look: MarkStyle = THIN) -> None:
         """Slanted lines within a rectangle."""
         step, height = 3.0, high - low
         start = left - height
@@ -147,10 +147,10 @@ class Pen:
         self.marks += [mark.moved(x, y) for mark in marks]
 
 
-def around(marks: list[Mark]) -> Box:
+def around(marks: list[Mark]) -> Rect:
     """What marks cover together."""
     boxes = [mark.box for mark in marks]
-    return Box(
+    return Rect(
         min(box.left for box in boxes),
         min(box.low for box in boxes),
         max(box.right for box in boxes),

@@ -12,12 +12,12 @@ from typing import TYPE_CHECKING, Any
 from clutchwork.base.errors import UseError
 from clutchwork.base.extras import need
 from clutchwork.base.paths import fitting
-from clutchwork.base.shown import shown
+from clutchwork.base.quote import quote
 from clutchwork.base.writing import put
 from clutchwork.declare.calls import explained_methods
 from clutchwork.results.plot.style import RC
 from clutchwork.schematic.look import GREY, LOCKED, NAME, OPEN, SLIPPING, VALUE
-from clutchwork.schematic.pen import Box, Mark, Pen, Stroke, Text, width_of
+from clutchwork.schematic.pen import Mark, Rect, Stroke, SymbolPen, Text, width_of
 from clutchwork.schematic.sheet import DOT, Sheet
 from clutchwork.schematic.symbols.contacts import clutch
 from clutchwork.schematic.symbols.symbol import LEFT, RIGHT, Drawn
@@ -61,7 +61,7 @@ class Schematic:
         path = fitting("save", path, "driveline.svg")
         kind = kind_of(path)
         if not kind:
-            raise UseError("save", [f"{shown(str(path))} does not say the format: end it with .svg, .png or .pdf"])
+            raise UseError("save", [f"{quote(str(path))} does not say the format: end it with .svg, .png or .pdf"])
         put(path, self._bytes(kind, dpi))
 
     def _bytes(self, kind: str, dpi: float = 200.0) -> bytes:
@@ -100,12 +100,12 @@ def _drawn(name: str, time: float | None, sheet: Sheet) -> Iterator[Figure]:
     with rc_context({**RC, **SAME, "text.parse_math": False}):
         figure = Figure(figsize=(wide / INCH, tall / INCH), facecolor="white")
         FigureCanvasAgg(figure)
-        draw = _Canvas(figure, Box(box.left - MARGIN, low - MARGIN, box.left - MARGIN + wide, high + MARGIN))
+        draw = _Canvas(figure, Rect(box.left - MARGIN, low - MARGIN, box.left - MARGIN + wide, high + MARGIN))
         for wire in sheet.wires:
             for line in wire.pieces:
                 draw.mark(Stroke(line, False, wire.look), cap="projecting" if wire.look.dash == "solid" else "butt")
             for x, y in wire.dots:
-                pen = Pen()
+                pen = SymbolPen()
                 pen.circle(x, y, DOT, look=wire.look._replace(fill=wire.look.colour, width=0.4, dash="solid"))
                 draw.mark(pen.marks[0])
         for mark in sheet.links:
@@ -118,20 +118,20 @@ def _drawn(name: str, time: float | None, sheet: Sheet) -> Iterator[Figure]:
         yield figure
 
 
-def _head(name: str, time: float | None, box: Box) -> list[Mark]:
+def _head(name: str, time: float | None, box: Rect) -> list[Mark]:
     """Name of the driveline and instant, above the picture."""
     text = name if time is None else f"{name}, t = {time:.6g} s"
     half = 0.5 * width_of(text, NAME + 1.5, True)
     return [Text(box.left + half, box.high + 12.0, text, NAME + 1.5, GREY, True)]
 
 
-def _legend(time: float | None, box: Box) -> list[Mark]:
+def _legend(time: float | None, box: Rect) -> list[Mark]:
     """The three looks of a contact, below the picture of a run."""
     if time is None:
         return []
-    pen, x = Pen(), box.left + 16.0
+    pen, x = SymbolPen(), box.left + 16.0
     for state in (LOCKED, SLIPPING, OPEN):
-        own = Pen()
+        own = SymbolPen()
         clutch(own, Drawn(None, {"a": LEFT, "b": RIGHT}, state=state))
         pen.take(own.marks, x, box.low - 26.0)
         half = 0.5 * width_of(state, VALUE)
@@ -143,7 +143,7 @@ def _legend(time: float | None, box: Box) -> list[Mark]:
 class _Canvas:
     """Draws marks into a figure whose unit is a point."""
 
-    def __init__(self, figure: Figure, box: Box) -> None:
+    def __init__(self, figure: Figure, box: Rect) -> None:
         self._axes = figure.add_axes((0.0, 0.0, 1.0, 1.0))
         self._axes.set_axis_off()
         self._axes.set_xlim(box.left, box.right)

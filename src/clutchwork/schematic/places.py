@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 
 from clutchwork.base.classes import dataclass
-from clutchwork.schematic.layers import End, Layers, Lines, linear_program
+from clutchwork.schematic.layers import End, Layers, NodeLines, linear_program
 from clutchwork.schematic.pen import Point
 
 TRACK, EDGE, NEAR = 6.5, 8.0, 4.0  # pt between tracks, beside them, and between lines that must not touch
@@ -20,14 +20,14 @@ TRIES = 6
 class Wire:
     """The lines of a node in one channel: points joined by straight pieces, and dots where three meet."""
 
-    lines: Lines
+    lines: NodeLines
     pieces: list[tuple[Point, Point]]
     dots: list[Point]
     pins: list[Point]  # what it joins, those on the left first
 
 
 @dataclass(frozen=True, eq=False)
-class Places:
+class Coordinates:
     """Where everything is [pt]."""
 
     x: list[float]  # of each layer
@@ -35,7 +35,7 @@ class Places:
     wires: list[Wire]
 
 
-def placed(layers: Layers, order: list[list[int]]) -> Places:
+def placed(layers: Layers, order: list[list[int]]) -> Coordinates:
     """Place all spots and route all lines."""
     apart: dict[tuple[End, End], int] = {}
     for _ in range(TRIES):
@@ -48,7 +48,7 @@ def placed(layers: Layers, order: list[list[int]]) -> Places:
         apart |= new
     x, edges = _columns(layers, tracks)
     wires = [track.wire(lines, *edges[k], layers, x, y) for k, track in enumerate(tracks) for lines in track.lines]
-    return Places(x, y, wires)
+    return Coordinates(x, y, wires)
 
 
 def _heights(layers: Layers, order: list[list[int]], apart: dict[tuple[End, End], int]) -> list[float]:
@@ -131,7 +131,7 @@ def _columns(layers: Layers, tracks: list[_Tracks]) -> tuple[list[float], list[t
 class _Tracks:
     """The upright pieces of one channel, each on a track, so that none lies on another line."""
 
-    def __init__(self, lines: list[Lines], y: list[float]) -> None:
+    def __init__(self, lines: list[NodeLines], y: list[float]) -> None:
         self.lines = lines
         self._left = [[y[end.spot] + end.height for end in one.left] for one in lines]
         self._right = [[y[end.spot] + end.height for end in one.right] for one in lines]
@@ -187,7 +187,7 @@ class _Tracks:
                 if abs(a - b) < NEAR:
                     yield end, other, 1 if a >= b else -1
 
-    def wire(self, lines: Lines, left: float, right: float, layers: Layers, x: list[float], y: list[float]) -> Wire:
+    def wire(self, lines: NodeLines, left: float, right: float, layers: Layers, x: list[float], y: list[float]) -> Wire:
         """The pieces of one line, from pin to pin."""
         number = self.lines.index(lines)
         wide = TRACK * max(self.count - 1, 0)

@@ -6,16 +6,16 @@ from dataclasses import field
 from itertools import pairwise
 
 from clutchwork.base.classes import dataclass
-from clutchwork.schematic.cells import Piece, cell_of, line_of
-from clutchwork.schematic.diagram import Diagram, Thing
+from clutchwork.schematic.cells import SymbolCell, cell_of, line_of
+from clutchwork.schematic.diagram import SymbolGraph, Thing
 from clutchwork.schematic.flow import flow
 from clutchwork.schematic.folds import WIDE, folds
 from clutchwork.schematic.layers import Layers, layered
-from clutchwork.schematic.look import Look
-from clutchwork.schematic.moment import Moment
+from clutchwork.schematic.look import MarkStyle
+from clutchwork.schematic.moment import Snapshot
 from clutchwork.schematic.order import ordered
-from clutchwork.schematic.pen import Box, Mark, Point, Stroke, around
-from clutchwork.schematic.places import Places, placed
+from clutchwork.schematic.pen import Mark, Point, Rect, Stroke, around
+from clutchwork.schematic.places import Coordinates, placed
 
 APART, WIDEST, BEND = 20.0, 520.0, 10.0  # pt between parts, and of a row of small ones
 DOT = 1.7
@@ -26,7 +26,7 @@ class Wired:
     """The lines of one node: points joined by straight pieces."""
 
     node: str
-    look: Look
+    look: MarkStyle
     pieces: list[tuple[Point, Point]]
     dots: list[Point]
 
@@ -35,7 +35,7 @@ class Wired:
 class Sheet:
     """Pieces at their places, lines, and what they cover together [pt]."""
 
-    pieces: list[Piece] = field(default_factory=list)
+    pieces: list[SymbolCell] = field(default_factory=list)
     wires: list[Wired] = field(default_factory=list)
     links: list[Mark] = field(default_factory=list)
 
@@ -47,10 +47,10 @@ class Sheet:
         return [*lines, *self.links, *symbols]
 
     @property
-    def box(self) -> Box:
+    def box(self) -> Rect:
         """What is covered."""
         marks = self.marks
-        return around(marks) if marks else Box(0.0, 0.0, 0.0, 0.0)
+        return around(marks) if marks else Rect(0.0, 0.0, 0.0, 0.0)
 
     def moved(self, x: float, y: float) -> Sheet:
         """The same elsewhere."""
@@ -60,7 +60,7 @@ class Sheet:
 
         return Sheet(
             [
-                Piece(p.name, p.what, [m.moved(x, y) for m in p.marks], [t.moved(x, y) for t in p.text])
+                SymbolCell(p.name, p.what, [m.moved(x, y) for m in p.marks], [t.moved(x, y) for t in p.text])
                 for p in self.pieces
             ],
             [
@@ -77,7 +77,7 @@ class Sheet:
         self.links.extend(other.links)
 
 
-def sheet(diagram: Diagram, moment: Moment, *, values: bool = True, width: float = WIDE) -> Sheet:
+def sheet(diagram: SymbolGraph, moment: Snapshot, *, values: bool = True, width: float = WIDE) -> Sheet:
     """Lay out a diagram; what is wider than `width` [pt] is folded where it can be."""
     parts = [_part(things, moment, values, width) for things in _connected(diagram)]
     made, top = Sheet(), 0.0
@@ -106,7 +106,7 @@ def _rows(parts: list[Sheet]) -> list[list[Sheet]]:
     return rows
 
 
-def _connected(diagram: Diagram) -> list[list[Thing]]:
+def _connected(diagram: SymbolGraph) -> list[list[Thing]]:
     """Things that hang together, mechanical ones first."""
     group = {id(thing): number for number, thing in enumerate(diagram.things)}
     members = {number: [thing] for number, thing in enumerate(diagram.things)}
@@ -123,7 +123,7 @@ def _connected(diagram: Diagram) -> list[list[Thing]]:
     return sorted(found, key=lambda things: min(kinds.get(thing.what, 2) for thing in things))
 
 
-def _part(things: list[Thing], moment: Moment, values: bool, width: float) -> Sheet:
+def _part(things: list[Thing], moment: Snapshot, values: bool, width: float) -> Sheet:
     nodes = [thing for thing in things if thing.is_node]
     elements = [thing for thing in things if not thing.is_node]
     way = flow(nodes, elements) if nodes else None
@@ -141,7 +141,7 @@ def _part(things: list[Thing], moment: Moment, values: bool, width: float) -> Sh
     return _stacked(rows, [_crossing(places, cut) for cut in cuts])
 
 
-def _row(layers: Layers, places: Places, first: int, last: int) -> Sheet:
+def _row(layers: Layers, places: Coordinates, first: int, last: int) -> Sheet:
     """The layers from `first` up to `last`, without the lines to those behind."""
     made = Sheet()
     for spot in layers.spots:
@@ -157,7 +157,7 @@ def _row(layers: Layers, places: Places, first: int, last: int) -> Sheet:
     return made
 
 
-def _crossing(places: Places, cut: int) -> tuple[Thing, Point, Point]:
+def _crossing(places: Coordinates, cut: int) -> tuple[Thing, Point, Point]:
     """The only line behind a layer: its node, where it leaves and where it goes on."""
     wire = next(wire for wire in places.wires if wire.lines.layer == cut - 1)
     return wire.lines.node, wire.pins[0], wire.pins[-1]
@@ -183,7 +183,7 @@ def _stacked(rows: list[Sheet], crossings: list[tuple[Thing, Point, Point]]) -> 
     return made
 
 
-def _moved(piece: Piece, x: float, y: float) -> Piece:
-    return Piece(
+def _moved(piece: SymbolCell, x: float, y: float) -> SymbolCell:
+    return SymbolCell(
         piece.name, piece.what, [mark.moved(x, y) for mark in piece.marks], [text.moved(x, y) for text in piece.text]
     )

@@ -1,4 +1,4 @@
-"""Shifts of a gearbox: schedule, controller, what a shift was like, faults."""
+"""Shifts of a gearbox: schedule, controller, measures of shift quality, faults."""
 
 from __future__ import annotations
 

@@ -6,7 +6,7 @@ from collections.abc import Iterable
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
-from clutchwork.base.shown import listed
+from clutchwork.base.quote import listed
 from clutchwork.shifts.exchange import FRICTION
 
 if TYPE_CHECKING:

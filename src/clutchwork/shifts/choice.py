@@ -17,7 +17,7 @@ SLOW = 0.1
 
 
 @dataclass
-class Choice:
+class GearChoice:
     """The next gear of a `ShiftController`."""
 
     schedule: ShiftSchedule | None

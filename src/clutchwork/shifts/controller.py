@@ -7,10 +7,10 @@ from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
 from clutchwork.base.errors import UseError
-from clutchwork.base.shown import listed, shown
+from clutchwork.base.quote import listed, quote
 from clutchwork.shifts.actuation import Actuation
-from clutchwork.shifts.choice import Choice
-from clutchwork.shifts.course import Course
+from clutchwork.shifts.choice import GearChoice
+from clutchwork.shifts.course import ExchangeSequence
 from clutchwork.shifts.exchange import Exchange, exchanges
 from clutchwork.shifts.plant import Plant
 from clutchwork.shifts.record import NEUTRAL, Measured, ShiftRecord
@@ -68,13 +68,13 @@ class ShiftController:
     # what it remembers
     records: list[ShiftRecord] = field(default_factory=list)
     _left: list[Exchange] = field(default_factory=list)
-    _course: Course | None = None
+    _course: ExchangeSequence | None = None
     _called: float = 0.0  # s
     _ended: float = 0.0  # s, end of the last shift
 
     def __post_init__(self) -> None:
         self._known(self.gear)
-        self._choice = Choice(self.schedule, self.settings)
+        self._choice = GearChoice(self.schedule, self.settings)
         self._do = Actuation(self.box, self.plant, self.prefix)
         self._do.only(self.gear, self.settings)
         self._ended = -self.pause
@@ -137,7 +137,7 @@ class ShiftController:
     def _known(self, gear: str) -> None:
         if gear != NEUTRAL and gear not in self.box.gears:
             remedy = f"choose from {listed([*self.box.gears, NEUTRAL])}"
-            raise UseError("ShiftController", [f"{shown(gear)} is not a gear of {shown(self.box.name)}; {remedy}"])
+            raise UseError("ShiftController", [f"{quote(gear)} is not a gear of {quote(self.box.name)}; {remedy}"])
 
     # --------------------------------------------------------------------------------------------------- the shift
 
@@ -159,14 +159,14 @@ class ShiftController:
         opens += (one.on,) if not one.off else ()
         filled = len(self._left) < len(record.exchanges)
         ahead = self._left[1].on if len(self._left) > 1 else ""
-        self._course = Course(one, self._with(record), self._do, time, filled, ahead, opens)
+        self._course = ExchangeSequence(one, self._with(record), self._do, time, filled, ahead, opens)
         self.records[-1].phases.append((time, "mesh"))
 
     def _with(self, record: ShiftRecord) -> ShiftSettings:
         """Calibration of a shift."""
         return self.chosen.get((record.before, record.after), self.chosen.get(record.kind, self.settings))
 
-    def _go_on(self, course: Course, time: float, period: float, now: Measured) -> None:
+    def _go_on(self, course: ExchangeSequence, time: float, period: float, now: Measured) -> None:
         new = course.step(time, period, now)
         if new == "failed":
             self._abandon(time, self.records[-1].before, f"{course.one.on} did not engage")

@@ -19,7 +19,7 @@ UNLOADED = 5.0
 
 
 @dataclass
-class Course:
+class ExchangeSequence:
     """One exchange that goes on; each state is a method that returns the next one, or nothing while it lasts."""
 
     one: Exchange

@@ -41,10 +41,10 @@ class Sensed:
 
     def read(self, sim: Simulator, control: ShiftController, throttle: float) -> Measured:
         """What the controller knows at the present time of a run; throttle, of the driver."""
-        return _Reader(self, sim, control)(throttle)
+        return _SensorReader(self, sim, control)(throttle)
 
 
-class _Reader:
+class _SensorReader:
     """Reads what the controller knows; the names are put together once."""
 
     def __init__(self, sensed: Sensed, sim: Simulator, control: ShiftController) -> None:
@@ -87,7 +87,7 @@ def drive(
     Parameters: throttle, of the driver over time, 0 to 1; also, what else is set, such as brakes; period, from one call
     of the controller to the next while it shifts [s]; resting, the same between shifts.
     """
-    read = _Reader(sensed, sim, control)
+    read = _SensorReader(sensed, sim, control)
     set_: dict[str, float] = {}
     while sim.time < until - 1e-9:
         time, pedal = sim.time, float(throttle(sim.time))

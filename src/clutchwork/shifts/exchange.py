@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 from clutchwork.base.classes import dataclass
 from clutchwork.base.errors import UseError
-from clutchwork.base.shown import listed
+from clutchwork.base.quote import listed
 from clutchwork.gearbox.motion import speeds
 
 if TYPE_CHECKING:

@@ -8,7 +8,7 @@ from pathlib import Path
 
 from clutchwork.base.classes import dataclass
 from clutchwork.base.paths import fitting
-from clutchwork.base.text import columns
+from clutchwork.base.plural import columns
 from clutchwork.base.writing import put
 
 HEADS = (

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from clutchwork.base.errors import UseError
-from clutchwork.base.shown import listed, shown
+from clutchwork.base.quote import listed, quote
 from clutchwork.gearbox.motion import GEAR, NEUTRAL, OUTPUT_HELD, TIE_UP
 from clutchwork.shifts.comfort import low_pass
 from clutchwork.shifts.fault_results import Fault, FaultResult, FaultTable
@@ -37,7 +37,7 @@ def single_faults(box: Gearbox, gears: Sequence[str] = ()) -> Iterator[Fault]:
     """
     known = box.ratios
     wrong = [
-        f"{shown(gear)} is not a gear of {box.name}; choose from {listed(known)}" for gear in gears if gear not in known
+        f"{quote(gear)} is not a gear of {box.name}; choose from {listed(known)}" for gear in gears if gear not in known
     ]
     if wrong:
         raise UseError("cw.shifts.fault_table", wrong)

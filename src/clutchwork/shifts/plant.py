@@ -10,7 +10,7 @@ import numpy as np
 from clutchwork.assembly.wiring import wiring
 from clutchwork.base.classes import dataclass
 from clutchwork.base.errors import UseError
-from clutchwork.base.shown import listed
+from clutchwork.base.quote import listed
 from clutchwork.stepping.simulator import Simulator
 
 if TYPE_CHECKING:

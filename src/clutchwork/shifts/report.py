@@ -12,7 +12,7 @@ import numpy as np
 from clutchwork.base.errors import UseError
 from clutchwork.base.extras import need
 from clutchwork.base.paths import fitting
-from clutchwork.base.text import columns
+from clutchwork.base.plural import columns
 from clutchwork.base.writing import replaced
 
 if TYPE_CHECKING:

@@ -38,10 +38,10 @@ class Column(Signal):
     def _read(self) -> Any:
         """Times and values of the file in SI, a row each, and the head of the column."""
         # numpy is no need of the build, which imports this declaration
-        from clutchwork.signals.bases.column_file import Wanted
+        from clutchwork.signals.bases.column_file import ColumnRequest
         from clutchwork.signals.bases.measured.reading import read
 
-        wanted = Wanted(self.path, self.time, self.column, self.scale, self.group or "")
+        wanted = ColumnRequest(self.path, self.time, self.column, self.scale, self.group or "")
         # a Path takes longer than a column of a file that is known
         return read(join(self.folder, self.path), wanted)  # noqa: PTH118
 

@@ -8,11 +8,11 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import numpy as np
 
 from clutchwork.base.errors import Problem
-from clutchwork.base.shown import shown
+from clutchwork.base.quote import quote
 from clutchwork.declare.quantity import has_unit
 from clutchwork.declare.schema import Spec, specs
 from clutchwork.model.changes import Target, in_si, named, target
-from clutchwork.run.course import Act, put
+from clutchwork.run.input_schedule import Act, put
 from clutchwork.signals.table import Table
 from clutchwork.stepping.parameters import NEW_RUN, NOTHING, Change, changed
 from clutchwork.stepping.signals import Settable, given_by_others, signals, unknown
@@ -26,7 +26,7 @@ PART_OF_SIGNAL = ("is a part of a signal, which the model gives", "set the signa
 NOT_A_NUMBER = ("must be a number", "a signal over time, or a friction law, belongs into the model")
 
 
-class Plan(NamedTuple):
+class ChangePlan(NamedTuple):
     """What is to be done, and all that is wrong with it."""
 
     acts: list[Act]
@@ -34,7 +34,7 @@ class Plan(NamedTuple):
     present: System | None = None  # the System with all parameters, where they change
 
 
-class Found(NamedTuple):
+class ParameterTarget(NamedTuple):
     """Where the name of a parameter leads to: its present value and its declaration."""
 
     aim: Target
@@ -58,7 +58,7 @@ class Outside:
         self._present = self._base.changed(self.changed) if self.changed else self._base
         return dict(self.held), dict(self.changed)
 
-    def plan(self, given: Mapping[Any, Any], time: float) -> Plan:
+    def plan(self, given: Mapping[Any, Any], time: float) -> ChangePlan:
         """How values are set by name at a time [s]; None: that of the model again."""
         acts, problems, params = list[Act](), list[Problem](), dict[str, Any]()
         for name, value in given.items():
@@ -71,10 +71,10 @@ class Outside:
                 problems.append(linked)
             else:
                 params[name] = value
-        more = self._parameters(params) if params else Plan([], [])
-        return Plan(acts + more.acts, problems + more.problems, more.present)
+        more = self._parameters(params) if params else ChangePlan([], [])
+        return ChangePlan(acts + more.acts, problems + more.problems, more.present)
 
-    def take(self, plan: Plan) -> None:
+    def take(self, plan: ChangePlan) -> None:
         """Remember what was done."""
         for act in plan.acts:
             put(self.changed if act.kind == "param" else self.held, act.name, act.value)
@@ -96,7 +96,7 @@ class Outside:
 
     # --------------------------------------------------------------------------------------------------- parameters
 
-    def _parameters(self, given: Mapping[str, Any]) -> Plan:
+    def _parameters(self, given: Mapping[str, Any]) -> ChangePlan:
         values, problems = dict[str, Any](), list[Problem]()
         for name, value in given.items():
             known = self._value(name)
@@ -106,10 +106,10 @@ class Outside:
                 values[name] = in_si(known.aim, value) if has_unit(value) else plain(value)
         change, found = changed(self._base, self._present, self.changed, values) if values else (None, [])
         if change is None or problems:
-            return Plan([], problems + found)
+            return ChangePlan([], problems + found)
         return self._acts(values, change)
 
-    def _value(self, name: str) -> Found | None:
+    def _value(self, name: str) -> ParameterTarget | None:
         """Where a name leads to in the model."""
         source = self._present.source
         aim = target(named(source), name) if source is not None else None
@@ -120,9 +120,9 @@ class Outside:
             thing = getattr(thing, word)
         known = {item.name: spec for item, spec in specs(type(thing))} if hasattr(type(thing), "kind") else {}
         spec = known.get(aim.path[-1], Spec("param", "", "value"))
-        return Found(aim, getattr(thing, aim.path[-1]), spec)
+        return ParameterTarget(aim, getattr(thing, aim.path[-1]), spec)
 
-    def _faults(self, name: str, value: Any, found: Found) -> Iterator[Problem]:
+    def _faults(self, name: str, value: Any, found: ParameterTarget) -> Iterator[Problem]:
         """What is wrong with a value beside what a model says of it."""
         if any(name.startswith(f"{signal}.") for signal in self.signals):
             yield Problem(name, "", PART_OF_SIGNAL[0], remedy=PART_OF_SIGNAL[1])
@@ -131,9 +131,9 @@ class Outside:
             and found.spec.what in ("signal", "alternative", "law")
             and not isinstance(value, int | float | None)
         ):
-            yield Problem(name, "", NOT_A_NUMBER[0], shown(value), NOT_A_NUMBER[1])
+            yield Problem(name, "", NOT_A_NUMBER[0], quote(value), NOT_A_NUMBER[1])
 
-    def _acts(self, values: Mapping[str, Any], change: Change) -> Plan:
+    def _acts(self, values: Mapping[str, Any], change: Change) -> ChangePlan:
         """Acts of a change that can be done; the first has the numbers of all."""
         acts, problems = list[Act](), list[Problem]()
         for name, value in values.items():
@@ -141,7 +141,7 @@ class Outside:
             if not change.params and value is not None and known is not None and known.value != value:
                 problems.append(Problem(name, "", NOTHING, remedy=NEW_RUN))
             acts.append(Act("param", name, value, () if acts else tuple(change.params.items())))
-        return Plan([] if problems else acts, problems, change.new)
+        return ChangePlan([] if problems else acts, problems, change.new)
 
 
 def plain(value: Any) -> Any:

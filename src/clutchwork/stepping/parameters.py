@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from clutchwork.base.errors import ModelError, Problem
-from clutchwork.base.kept import kept
+from clutchwork.base.memoize import memoize
 from clutchwork.declare.node import Component, Work
 from clutchwork.run.begin import new_run
 
@@ -63,7 +63,7 @@ class Change:
             yield VARIANT, NEW_RUN
 
 
-@kept
+@memoize
 def _scratch(system: System) -> Any:
     """A run of the core that is asked which numbers it takes."""
     return new_run(system.to_bytes())
@@ -86,7 +86,7 @@ def changed(
     """
     made, wrong, refused = _changed(base, present, settled, given)
     if made is None and len(given) > 1:
-        # which of them it is; what is wrong with one alone may be right with the others
+        # find the offending value; single values may fail although the combination is valid
         alone = [_changed(base, present, settled, {name: value})[2] for name, value in given.items()]
         refused = [problem for problems in alone for problem in problems] or refused
     return made, wrong + refused

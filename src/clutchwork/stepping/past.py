@@ -12,9 +12,9 @@ from numpy.typing import NDArray
 
 from clutchwork.declare.layout import EVENT
 from clutchwork.results.events import Events, from_rows
-from clutchwork.results.held import Held
-from clutchwork.run.course import Numbers, Tape
+from clutchwork.results.external_settings import Held
 from clutchwork.run.failure import StoppedEarly
+from clutchwork.run.input_schedule import Numbers, Tape
 from clutchwork.run.simulation import Job, trajectory
 
 if TYPE_CHECKING:

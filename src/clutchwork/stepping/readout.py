@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from clutchwork.results.channels import Channels, channels
-from clutchwork.results.forms import Column
+from clutchwork.results.forms import RowEntry
 
 if TYPE_CHECKING:
     from clutchwork.assembly.system import System
@@ -38,7 +38,7 @@ class Readout(Mapping[str, Any]):
 
     def _reader(self, name: str) -> Callable[[], Any]:
         form, rows = self.channels[name].evaluate, self.rows
-        if isinstance(form, Column):
+        if isinstance(form, RowEntry):
             return partial(rows.item, 0, form.index)
         return lambda: form(rows)[0].item()
 

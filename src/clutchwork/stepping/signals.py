@@ -9,12 +9,12 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 from clutchwork.assembly.inputs import SPEED
 from clutchwork.assembly.wiring import wiring
 from clutchwork.base.errors import Problem, near
-from clutchwork.base.kept import kept
-from clutchwork.base.shown import shown
+from clutchwork.base.memoize import memoize
+from clutchwork.base.quote import quote
 from clutchwork.declare.node import Component, is_reference
 from clutchwork.declare.quantity import QuantityError, has_unit, in_si
 from clutchwork.declare.schema import Spec, inputs, specs
-from clutchwork.declare.speech import path_of
+from clutchwork.declare.wording import path_of
 from clutchwork.model.changes import named, of_owner, own_names, owner_of
 from clutchwork.model.fields import number_problems
 from clutchwork.model.numbers import At
@@ -58,7 +58,7 @@ def signals(system: System) -> dict[str, Settable]:
     return {**settable(system), **composed(system)}
 
 
-@kept
+@memoize
 def settable(system: System) -> dict[str, Settable]:
     """All signals of a System, found once."""
     known = dict(_declared(system))
@@ -69,7 +69,7 @@ def settable(system: System) -> dict[str, Settable]:
     return made
 
 
-@kept
+@memoize
 def composed(system: System) -> dict[str, Settable]:
     """Signals of composites that have other names in their parts, such as the command of a synchroniser."""
     made = {}
@@ -143,8 +143,8 @@ def _owner(system: System, shared: int) -> str:
 
 
 def unknown(system: System, name: object) -> Problem:
-    """A name that is that of nothing that could be set."""
-    path = name if isinstance(name, str) else shown(name)
+    """Explains why a name cannot be set."""
+    path = name if isinstance(name, str) else quote(name)
     given = [signal for signal in signals(system) if signal not in wiring(system).unused]
     plain = path.removesuffix("_signal")
     if plain != path and plain in given:

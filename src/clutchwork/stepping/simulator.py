@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 from clutchwork.assembly.system import System
 from clutchwork.base import html
 from clutchwork.base.errors import ModelError, UseError
-from clutchwork.base.shown import shown
+from clutchwork.base.quote import quote
 from clutchwork.declare.calls import explained, explained_methods
 from clutchwork.declare.layout import DONE, EVENTS_FULL
 from clutchwork.declare.options import Options
@@ -34,7 +34,7 @@ if TYPE_CHECKING:
     from clutchwork.declare.option_fields import OptionFields
     from clutchwork.results.events import Events
     from clutchwork.results.trajectory import Trajectory
-    from clutchwork.run.course import Act, Numbers
+    from clutchwork.run.input_schedule import Act, Numbers
 
 Array = NDArray[np.float64]
 # two instants that are closer are one, as a share of them
@@ -96,7 +96,7 @@ class Simulator:
         """
         step = _seconds("sim.advance", "duration", duration)
         if step < 0.0:
-            raise UseError("sim.advance", [f"duration is {step:g} s: time does not go back; sim.restore(state) does"])
+            raise UseError("sim.advance", [f"duration is {step:g} s: it must not be negative; use sim.restore(state)"])
         end = self._time + step
         if step > 0.0:
             # as a decimal, which knots of tables are
@@ -213,7 +213,7 @@ class Simulator:
                     self._find_controllers()
                 return
         if not isinstance(name, Mapping) and value is None:
-            raise UseError("sim.set", [f"{shown(name)} has no value; write sim.set({shown(name)}, value)"])
+            raise UseError("sim.set", [f"{quote(name)} has no value; write sim.set({quote(name)}, value)"])
         self._set(name if isinstance(name, Mapping) else {name: value})
 
     def __setitem__(self, name: str, value: Any) -> None:
@@ -227,7 +227,7 @@ class Simulator:
         unset = [name for name in names if name not in held]
         if unset:
             known = ", ".join(held) or "nothing"
-            raise UseError("sim.release", [f"{shown(name)} is not set; set is {known}" for name in unset])
+            raise UseError("sim.release", [f"{quote(name)} is not set; set is {known}" for name in unset])
         self._set(dict.fromkeys(names or held))
 
     def _set(self, given: Mapping[Any, Any]) -> None:
@@ -349,7 +349,7 @@ class Simulator:
         begin there. StateError for a state that is damaged or that of another model.
         """
         if not isinstance(state, State):
-            raise UseError("sim.restore", [f"state is {shown(state)}: {OF_A_STATE}"])
+            raise UseError("sim.restore", [f"state is {quote(state)}: {OF_A_STATE}"])
         before = self._run.save()
         try:
             put(self._run, self._system, state)
@@ -383,12 +383,12 @@ class Simulator:
 
     def __reduce__(self) -> NoReturn:
         """Refuse to be copied or pickled, with what to do instead."""
-        remedy = "keep the model and sim.save(), and begin with cw.Simulator(model, start=state)"
+        remedy = "keep the model and the state of sim.save(), and start with cw.Simulator(model, start=state)"
         raise UseError("cw.Simulator", [f"it cannot be copied or pickled; {remedy}"])
 
     def __repr__(self) -> str:
         status = "" if self._failure is None else f", {self._failure}"
-        return f"<Simulator of {shown(self._system.name)} at {self._time:g} s{status}>"
+        return f"<Simulator of {quote(self._system.name)} at {self._time:g} s{status}>"
 
     def _repr_html_(self) -> str:
         """Where it is, and what was set, for a notebook."""
@@ -411,7 +411,7 @@ def _seconds(call: str, name: str, value: object) -> float:
         return value
     given = _in_seconds(value) if has_unit(value) else value
     if isinstance(given, bool) or not isinstance(given, Real) or not isfinite(float(given)):
-        raise UseError(call, [f"{name} is {shown(value)}: give a number in s"])
+        raise UseError(call, [f"{name} is {quote(value)}: give a number in s"])
     return float(given)
 
 

@@ -5,12 +5,12 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from clutchwork.base.errors import Problem
-from clutchwork.declare.given import Wanted, field_in_si
 from clutchwork.declare.node import Segment
 from clutchwork.declare.schema import specs
+from clutchwork.declare.to_si import TargetUnit, field_in_si
 from clutchwork.model.fields import signal_problems
 from clutchwork.model.numbers import At
-from clutchwork.run.course import Act
+from clutchwork.run.input_schedule import Act
 from clutchwork.signals.table import Table
 
 if TYPE_CHECKING:
@@ -23,7 +23,7 @@ Found = tuple[Act, list[Problem]]
 def tabled(system: System, name: str, signal: Settable, table: Table, time: float) -> Found:
     """The act that lets a signal follow a table from a time [s] on, and what is wrong with it."""
     spec = next(spec for item, spec in specs(Table) if item.name == "points")
-    made = Table(field_in_si(table.points, spec, Wanted(signal.unit, signal.spec.units)))
+    made = Table(field_in_si(table.points, spec, TargetUnit(signal.unit, signal.spec.units)))
     found = list(signal_problems(made, signal.spec, At(signal.path, signal.quantity, signal.unit)))
     if not found:
         # as it is now, whatever becomes of a list

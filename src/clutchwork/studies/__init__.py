@@ -1,1 +1,1 @@
-"""Designs of experiments, and studies of very many runs in data sets on disk, here or on many machines."""
+"""Designs of experiments, and studies of very many runs in data sets on disk."""

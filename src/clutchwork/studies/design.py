@@ -13,11 +13,11 @@ from numpy.typing import NDArray
 from clutchwork.base.classes import dataclass
 from clutchwork.base.errors import UnknownName, UseError, near
 from clutchwork.base.extras import need
-from clutchwork.base.shown import shown
-from clutchwork.base.text import columns, counted
+from clutchwork.base.plural import columns, counted
+from clutchwork.base.quote import quote
 from clutchwork.declare.calls import explained, explained_methods
 from clutchwork.model.changes import targets_of
-from clutchwork.studies.distributions import Choice, Distribution, distribution
+from clutchwork.studies.distributions import Discrete, Distribution, distribution
 from clutchwork.studies.points import METHODS, Points
 from clutchwork.sweeps.variants import Variants, Varied
 
@@ -63,7 +63,7 @@ class Design:
 
     def _varied(self, name: str, how: Any, share: NDArray[np.float64]) -> Varied:
         unit = self.units.get(name, "")
-        if isinstance(how, Choice):
+        if isinstance(how, Discrete):
             return Varied(name, how.values, how.labels, how.codes(share), unit)
         values = tuple(np.asarray(how.quantile(share) if isinstance(how, Distribution) else how.ppf(share)).tolist())
         return Varied(name, values, values, np.arange(len(values), dtype=np.int64), unit)
@@ -77,9 +77,9 @@ class Design:
             def of(value: Any, name: str = name) -> Any:
                 return _si(model, name, (value,)).values[0]
 
-            found = _si(model, name, how.values if isinstance(how, Choice) else (1.0,))
+            found = _si(model, name, how.values if isinstance(how, Discrete) else (1.0,))
             units[name], made[name] = found.unit, how
-            if isinstance(how, Choice):
+            if isinstance(how, Discrete):
                 labels = found.labels if how.labels == how.values else how.labels
                 made[name] = replace(how, values=found.values, labels=labels)
             elif isinstance(how, Distribution) and how.unit:
@@ -95,7 +95,7 @@ class Design:
     def __getitem__(self, name: str) -> NDArray[Any]:
         """The values of a name, or their labels; KeyError with near names when there is none."""
         if name not in self.given:
-            raise UnknownName(f"the design does not vary {shown(name)}{near(name, self.given)}")
+            raise UnknownName(f"the design does not vary {quote(name)}{near(name, self.given)}")
         parts = [self.part(first, min(first + ROWS, len(self))) for first in range(0, len(self), ROWS)]
         place = self.names.index(name)
         return np.concatenate([part.varied[place].column for part in parts])
@@ -136,12 +136,12 @@ def design(
     """
     problems = list[str]()
     if not isinstance(vary, Mapping) or not vary or not all(isinstance(name, str) for name in vary):
-        problems.append(f"vary is {shown(vary)}: give distributions by name, {{'c1.gain': cw.normal(5e-4, 2e-5)}}")
+        problems.append(f"vary is {quote(vary)}: give distributions by name, {{'c1.gain': cw.normal(5e-4, 2e-5)}}")
     for name, number in (("count", count), ("seed", seed)):
         if not isinstance(number, int | np.integer) or isinstance(number, bool) or number < (name == "count"):
-            problems.append(f"{name} is {shown(number)}: give a whole number from {int(name == 'count')} on")
+            problems.append(f"{name} is {quote(number)}: give a whole number from {int(name == 'count')} on")
     if method not in WAYS:
-        problems.append(f"method is {shown(method)}{near(method, WAYS)}; known: {', '.join(WAYS)}")
+        problems.append(f"method is {quote(method)}{near(method, WAYS)}; known: {', '.join(WAYS)}")
     if second_order and method != "saltelli":
         problems.append("second_order goes with method='saltelli' alone; remove it")
     if problems:
@@ -159,7 +159,7 @@ def _si(model: Model, name: str, values: tuple[Any, ...]) -> Varied:
 
 def _said(how: Any) -> str:
     """A distribution in words; of scipy.stats its name and numbers."""
-    if isinstance(how, Distribution | Choice):
+    if isinstance(how, Distribution | Discrete):
         return str(how)
     numbers = [f"{number:g}" for number in getattr(how, "args", ())]
     numbers += [f"{name}={number:g}" for name, number in getattr(how, "kwds", {}).items()]

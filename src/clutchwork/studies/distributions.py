@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 from clutchwork.base.classes import dataclass
 from clutchwork.base.errors import UseError
 from clutchwork.base.extras import need
-from clutchwork.base.shown import shown
+from clutchwork.base.quote import quote
 from clutchwork.declare.calls import explained
 from clutchwork.declare.units import split
 
@@ -63,7 +63,7 @@ class Distribution:
 
 
 @dataclass(frozen=True)
-class Choice:
+class Discrete:
     """Values of any kind, each with its share."""
 
     values: tuple[Any, ...]
@@ -154,7 +154,7 @@ def triangular(low: Any, mode: Any, high: Any) -> Distribution:
 
 
 @explained("cw.discrete", values="[0.1, 0.2]")
-def discrete(values: Any, shares: Sequence[float] | None = None) -> Choice:
+def discrete(values: Any, shares: Sequence[float] | None = None) -> Discrete:
     """One of several values of any kind, numbers, friction laws or signals, for `design`.
 
     Parameters: values, a list, or a mapping from labels to values; shares, how often each is drawn, all alike by
@@ -162,26 +162,26 @@ def discrete(values: Any, shares: Sequence[float] | None = None) -> Choice:
     """
     labelled = isinstance(values, Mapping)
     if isinstance(values, str) or not hasattr(values, "__len__") or not len(values):
-        raise UseError("discrete", [f"values are {shown(values)}: give a list of values, or values by label"])
+        raise UseError("discrete", [f"values are {quote(values)}: give a list of values, or values by label"])
     made = tuple(values.values()) if labelled else tuple(values.tolist() if hasattr(values, "tolist") else values)
     weights = (1.0,) * len(made) if shares is None else tuple(float(share) for share in shares)
     if len(weights) != len(made) or min(weights) < 0.0 or not 0.0 < sum(weights) < np.inf:
         raise UseError(
-            "discrete", [f"shares are {shown(shares)}: give a number from 0 on for each of {len(made)} values"]
+            "discrete", [f"shares are {quote(shares)}: give a number from 0 on for each of {len(made)} values"]
         )
-    return Choice(made, tuple(map(str, values)) if labelled else made, tuple(w / sum(weights) for w in weights))
+    return Discrete(made, tuple(map(str, values)) if labelled else made, tuple(w / sum(weights) for w in weights))
 
 
 def distribution(call: str, name: str, given: Any) -> Any:
     """What a value of a design means: a distribution, (low, high), a list to choose from, or one of scipy.stats."""
-    if isinstance(given, Distribution | Choice) or callable(getattr(given, "ppf", None)):
+    if isinstance(given, Distribution | Discrete) or callable(getattr(given, "ppf", None)):
         return given
     if isinstance(given, tuple) and len(given) == 2:
         return uniform(*given)
     if isinstance(given, list | Mapping | np.ndarray):
         return discrete(given)
     ways = "cw.uniform(low, high), cw.normal(mean, deviation) or the like, (low, high), or a list to choose from"
-    raise UseError(call, [f"{name}: {shown(given)} is not a distribution; give {ways}"])
+    raise UseError(call, [f"{name}: {quote(given)} is not a distribution; give {ways}"])
 
 
 # -------------------------------------------------------------------------------------------------------------- numbers
@@ -194,7 +194,7 @@ def _read(call: str, **numbers: Any) -> tuple[list[float], str]:
         parts = split(given) if isinstance(given, str) else (given, "")
         number = parts[0] if parts else given
         if isinstance(number, bool) or not isinstance(number, int | float | np.number) or not np.isfinite(number):
-            problems.append(f"{name} is {shown(given)}: give a finite number, in SI or with a unit")
+            problems.append(f"{name} is {quote(given)}: give a finite number, in SI or with a unit")
         made.append(number)
         units.append(parts[1] if parts else "")
     if not problems and len(set(units)) > 1:

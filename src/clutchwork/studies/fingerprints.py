@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 
     from clutchwork.assembly.system import System
     from clutchwork.sweeps.outputs import Output
-    from clutchwork.sweeps.variants import Source
+    from clutchwork.sweeps.variants import VariantSource
 
 # variants that are looked at together
 TOGETHER = 8192
@@ -48,7 +48,7 @@ def _words(code: CodeType) -> Iterator[Any]:
         yield from _words(constant) if hasattr(constant, "co_code") else (_plain(constant),)
 
 
-def of_source(source: Source) -> tuple[str, Variants]:
+def of_source(source: VariantSource) -> tuple[str, Variants]:
     """Of all values, and for each name those by which all are judged: the least and the most of numbers."""
     digest, ends = sha256(), dict[str, Varied]()
     for first in range(0, len(source), TOGETHER):

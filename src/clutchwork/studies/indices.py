@@ -13,8 +13,8 @@ from clutchwork.base import html
 from clutchwork.base.classes import dataclass
 from clutchwork.base.errors import UseError
 from clutchwork.base.extras import need
-from clutchwork.base.shown import shown
-from clutchwork.base.text import columns
+from clutchwork.base.plural import columns
+from clutchwork.base.quote import quote
 from clutchwork.declare.calls import explained, explained_methods
 from clutchwork.studies.points import Saltelli
 from clutchwork.studies.result import Study
@@ -112,7 +112,7 @@ def sobol_indices(
     UseError where the design is another, or values are missing. Needs SALib.
     """
     if not isinstance(found, Study | Sweep):
-        raise UseError("sobol_indices", [f"{shown(found)} is neither a study nor a sweep; give what cw.study returns"])
+        raise UseError("sobol_indices", [f"{quote(found)} is neither a study nor a sweep; give what cw.study returns"])
     names, base, second = _design(found)
     values = _complete(output, found[output], base * _step(len(names), second), missing)
     made = _analysed(names, values, second, level, seed)

@@ -12,13 +12,13 @@ from typing import TYPE_CHECKING, Any
 
 from clutchwork.base.classes import dataclass
 from clutchwork.base.errors import ClutchworkError
-from clutchwork.base.shown import shortened
+from clutchwork.base.quote import shortened
 from clutchwork.base.writing import put
 from clutchwork.studies.fingerprints import of_model, of_output
-from clutchwork.studies.parts import Column
+from clutchwork.studies.parts import DataField
 
 if TYPE_CHECKING:
-    from clutchwork.sweeps.order import Order
+    from clutchwork.sweeps.request import Order
 
 FILE = "study.json"
 MODEL = "model.cwsystem"
@@ -40,7 +40,7 @@ class Manifest:
     asked: Mapping[str, Any]  # model, design, outputs, options: what must be the same to go on
     count: int  # variants
     chunk: int  # of them in each part
-    columns: tuple[Column, ...]
+    columns: tuple[DataField, ...]
     varied: int  # columns of what varies
     versions: Mapping[str, str]
     begun: str  # date and time, UTC
@@ -65,7 +65,7 @@ class Manifest:
             content = json.loads(path.read_text(encoding="utf-8"))
             if content.pop("format") != FORMAT:
                 raise StudyError(f"{path}: was written by another version; read it with that one")
-            columns = tuple(Column(**one) for one in content.pop("columns"))
+            columns = tuple(DataField(**one) for one in content.pop("columns"))
             return cls(**content, columns=columns)
         except FileNotFoundError:
             raise StudyError(f"{folder} holds no study: {FILE} is missing; give the folder of one") from None

@@ -27,7 +27,7 @@ TYPES = {"f": "double", "i": "int64", "u": "int64", "b": "bool"}
 
 
 @dataclass(frozen=True)
-class Column:
+class DataField:
     """A column of the data set."""
 
     name: str
@@ -50,11 +50,11 @@ def file_of(folder: Path, number: int) -> Path:
     return folder / DATA / NAME.format(number)
 
 
-def columns_of(first: Sweep) -> tuple[Column, ...]:
+def columns_of(first: Sweep) -> tuple[DataField, ...]:
     """The columns that a result has."""
     units = first.column_units()
-    found = [Column("variant", "int64")]
-    return (*found, *(Column(name, _type(values), units.get(name, "")) for name, values in first.columns()))
+    found = [DataField("variant", "int64")]
+    return (*found, *(DataField(name, _type(values), units.get(name, "")) for name, values in first.columns()))
 
 
 def _type(values: Any) -> str:
@@ -65,7 +65,7 @@ def _type(values: Any) -> str:
     return TYPES.get(values.dtype.kind, "string")
 
 
-def write(folder: Path, number: int, columns: tuple[Column, ...], found: Sweep, first: int, begun: float) -> Written:
+def write(folder: Path, number: int, columns: tuple[DataField, ...], found: Sweep, first: int, begun: float) -> Written:
     """Write the part of some variants; a file with its name is whole."""
     parquet = need("pyarrow.parquet", "study", "a study")
     made = Written(len(found), begun, time.time() - begun, worker(), len(found.problems))
@@ -79,13 +79,13 @@ def write(folder: Path, number: int, columns: tuple[Column, ...], found: Sweep, 
     return made
 
 
-def _table(columns: tuple[Column, ...], found: Sweep, first: int) -> Any:
+def _table(columns: tuple[DataField, ...], found: Sweep, first: int) -> Any:
     pyarrow = need("pyarrow", "study", "a study")
     given = {"variant": np.arange(first, first + len(found)), **dict(found.columns())}
     return pyarrow.table({one.name: _array(pyarrow, one, given[one.name]) for one in columns})
 
 
-def _array(pyarrow: Any, column: Column, values: Any) -> Any:
+def _array(pyarrow: Any, column: DataField, values: Any) -> Any:
     kind = pyarrow.type_for_alias(column.type)
     if column.type == "string":
         return pyarrow.array([None if value is None else str(value) for value in values.tolist()], kind)

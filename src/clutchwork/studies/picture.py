@@ -18,14 +18,14 @@ if TYPE_CHECKING:
 
     from matplotlib.figure import Figure
 
-    from clutchwork.studies.recorded import Indices, Recorded
+    from clutchwork.studies.recorded import Indices, RecordedStudy
 
 ROW, BAR, HEAD = 50.0, 7.0, 25.0  # mm
 BINS = 60
 SHARES = (0.05, 0.5, 0.95)
 
 
-def distributions(study: Recorded, names: Sequence[str], path: str | Path | None) -> Figure:
+def distributions(study: RecordedStudy, names: Sequence[str], path: str | Path | None) -> Figure:
     """A histogram of each output, with the median and the limits of nine tenths."""
     shown = [name for name in names if study[name].dtype.kind == "f" and np.isfinite(study[name]).any()]
     if not shown:

@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 
-class Recorded(Protocol):
+class RecordedStudy(Protocol):
     """A study."""
 
     @property

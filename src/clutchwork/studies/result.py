@@ -14,7 +14,7 @@ from clutchwork.base.classes import dataclass
 from clutchwork.base.errors import UnknownName, UseError, near
 from clutchwork.base.extras import need
 from clutchwork.base.paths import path_of
-from clutchwork.base.shown import shown
+from clutchwork.base.quote import quote
 from clutchwork.declare.calls import explained, explained_methods
 from clutchwork.declare.options import Options
 from clutchwork.results.selection import chosen
@@ -141,7 +141,7 @@ class Study:
         duckdb.
         """
         if not isinstance(sql, str):
-            raise UseError("study.query", [f"sql is {shown(sql)}: give a query as a string"])
+            raise UseError("study.query", [f"sql is {quote(sql)}: give a query as a string"])
         duckdb = need("duckdb", "study", "a query")
         connection = duckdb.connect()
         connection.from_parquet([str(file) for file in self.files]).create_view("study")
@@ -170,7 +170,7 @@ class Study:
         """The values of one variant by name."""
         if not isinstance(number, int | np.integer) or isinstance(number, bool) or not 0 <= number < self.count:
             remedy = f"give a whole number from 0 to {self.count - 1}"
-            raise UseError("study", [f"there is no variant {shown(number)}; {remedy}"])
+            raise UseError("study", [f"there is no variant {quote(number)}; {remedy}"])
         part = int(number) // self.manifest.chunk
         if part not in self.parts:
             raise UseError("study", [f"variant {number} is not there yet; let the study go on first"])
@@ -181,7 +181,7 @@ class Study:
 
     def _unknown(self, name: str) -> str:
         known = [one.name for one in self.manifest.columns]
-        return f"no column {shown(name)}{near(name, known, '`study.names` lists all outputs')}"
+        return f"no column {quote(name)}{near(name, known, '`study.names` lists all outputs')}"
 
     # --------------------------------------------------------------------------------------------------- text, pictures
 

@@ -13,20 +13,20 @@ from clutchwork.base.errors import ModelWarning, UseError, caller
 from clutchwork.base.paths import folder as made_folder
 from clutchwork.base.paths import path_of
 from clutchwork.base.progress import followed
-from clutchwork.base.shown import shown
+from clutchwork.base.quote import quote
 from clutchwork.declare.calls import explained
 from clutchwork.declare.options import Options
-from clutchwork.engines.choice import engine
-from clutchwork.engines.pace import chunk_size
+from clutchwork.executors.choice import executor
+from clutchwork.executors.pace import chunk_size
 from clutchwork.run.simulation import Assembles
 from clutchwork.studies.fingerprints import of_source
 from clutchwork.studies.lock import locked
 from clutchwork.studies.manifest import FILE, MODEL, Manifest, asked_of, now, refuse_other, versions
 from clutchwork.studies.parts import Written, columns_of, there, without_leftovers
 from clutchwork.studies.result import Study
-from clutchwork.studies.work import Chunk, Job, refuse_elsewhere, work
-from clutchwork.sweeps.order import Order, ordered, refuse_unfit, threads_of
+from clutchwork.studies.work import Chunk, StudyJob, refuse_elsewhere, work
 from clutchwork.sweeps.outputs import Asked, Computed
+from clutchwork.sweeps.request import Order, ordered, refuse_unfit, threads_of
 from clutchwork.sweeps.result import OutputWarning
 from clutchwork.sweeps.runs import in_python, run_all
 
@@ -35,7 +35,7 @@ if TYPE_CHECKING:
 
     from clutchwork.declare.node import Number
     from clutchwork.declare.option_fields import OptionFields
-    from clutchwork.engines.engine import Engine
+    from clutchwork.executors.executor import Executor
     from clutchwork.sweeps.result import Sweep
 
 Told = Callable[[int, int], None]
@@ -80,7 +80,7 @@ def study(
     """
     order, count = ordered("study", model, t_end, vary, outputs, options, changes), threads_of(threads, "study")
     if chunk is not None and (not isinstance(chunk, int) or isinstance(chunk, bool) or chunk < 1):
-        raise UseError("study", [f"chunk is {shown(chunk)}: give a whole number from 1 on, or nothing"])
+        raise UseError("study", [f"chunk is {quote(chunk)}: give a whole number of at least 1, or nothing"])
     where = made_folder(path_of("study", folder, "out/study").absolute())
     with locked(where), warnings.catch_warnings():
         # a value may be rarely wanted; that of a single run is given there
@@ -122,18 +122,18 @@ class _Going:
             without_leftovers(self.folder)
             if was.complete:
                 return was
-            with engine("study", self.on, self.threads, self.asked) as workers:
+            with executor("study", self.on, self.threads, self.asked) as workers:
                 return self._run(workers, was.manifest, was.parts, told)
         refuse_unfit(self.order.system, ends)
         first = self._first(FIRST)
-        with engine("study", self.on, self.threads, self.asked) as workers:
+        with executor("study", self.on, self.threads, self.asked) as workers:
             return self._run(workers, self._begun(workers, wanted, first), {}, told)
 
     def _first(self, count: int) -> Sweep:
         part = self.order.source.part(0, min(count, len(self.order)))
         return run_all(self.order.of(part), 1, _silent)
 
-    def _begun(self, workers: Engine, wanted: Mapping[str, Any], first: Sweep) -> Manifest:
+    def _begun(self, workers: Executor, wanted: Mapping[str, Any], first: Sweep) -> Manifest:
         """Everything that is known before the first chunk, written."""
         columns = columns_of(first)
         size = self.chunk or chunk_size(workers, self._job(columns), len(self.order), self._first)
@@ -155,11 +155,11 @@ class _Going:
         manifest.write(self.folder)
         return manifest
 
-    def _job(self, columns: Any) -> Job:
-        return Job(self.order.without_variants, self.folder, columns)
+    def _job(self, columns: Any) -> StudyJob:
+        return StudyJob(self.order.without_variants, self.folder, columns)
 
     def _run(
-        self, workers: Engine, manifest: Manifest, parts: dict[int, Written], told: Callable[[int], None]
+        self, workers: Executor, manifest: Manifest, parts: dict[int, Written], told: Callable[[int], None]
     ) -> Study:
         made = Study(self.folder, manifest, dict(parts))
         chunks = self._chunks(manifest, [number for number in manifest.sizes if number not in parts])

@@ -8,23 +8,23 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from clutchwork.engines.engine import EngineError
-from clutchwork.studies.parts import Column, Written, file_of, write
+from clutchwork.executors.executor import ExecutorError
+from clutchwork.studies.parts import DataField, Written, file_of, write
 from clutchwork.sweeps.runs import run_all
 
 if TYPE_CHECKING:
-    from clutchwork.engines.engine import Alive
-    from clutchwork.sweeps.order import Order
+    from clutchwork.executors.executor import Alive
+    from clutchwork.sweeps.request import Order
     from clutchwork.sweeps.variants import Variants
 
 
 @dataclass(frozen=True, eq=False)
-class Job:
+class StudyJob:
     """What all chunks share."""
 
     order: Order  # without its variants
     folder: Path
-    columns: tuple[Column, ...]
+    columns: tuple[DataField, ...]
 
 
 @dataclass(frozen=True, eq=False)
@@ -36,7 +36,7 @@ class Chunk:
     variants: Variants
 
 
-def work(job: Job, chunk: Chunk, alive: Alive) -> tuple[int, Written]:
+def work(job: StudyJob, chunk: Chunk, alive: Alive) -> tuple[int, Written]:
     """Run and write a chunk; its number, and what is known of its part."""
     begun = time.time()
     made = run_all(job.order.of(chunk.variants), 1, lambda _: alive())
@@ -44,8 +44,8 @@ def work(job: Job, chunk: Chunk, alive: Alive) -> tuple[int, Written]:
 
 
 def refuse_elsewhere(folder: Path, number: int, made: Written) -> None:
-    """EngineError where a worker has written into a folder that is not the one of this machine."""
+    """ExecutorError where a worker has written into a folder that is not the one of this machine."""
     machine = made.worker.rpartition(" ")[0]
     if machine != socket.gethostname() and not file_of(folder, number).exists():
         remedy = "give a folder that all machines share under the same path"
-        raise EngineError(f"{machine} wrote into {folder}, and nothing is there on this machine; {remedy}")
+        raise ExecutorError(f"{machine} wrote into {folder}, and nothing is there on this machine; {remedy}")

@@ -20,22 +20,22 @@ from numpy.typing import NDArray
 from clutchwork.assembly.changes import UNKNOWN_SOURCE
 from clutchwork.assembly.patches import PLAIN, Unpatched, patches
 from clutchwork.base.errors import ModelError, Problem
-from clutchwork.declare.given import settled
 from clutchwork.declare.layout import FIELDS
 from clutchwork.declare.node import Component, Law, Signal, ThermalNode
 from clutchwork.declare.quantity import has_unit
 from clutchwork.declare.schema import specs
-from clutchwork.declare.speech import path_of
+from clutchwork.declare.to_si import settled
+from clutchwork.declare.wording import path_of
 from clutchwork.model.changes import Target, renewed, targets_of
 from clutchwork.model.components import component_problems
 from clutchwork.model.fields import law_problems
 from clutchwork.model.numbers import At, is_right, number_problems
 from clutchwork.model.parts import role
 from clutchwork.model.thermal import thermal_problems
-from clutchwork.sweeps.driven import Driven
+from clutchwork.sweeps.driven import IndependentInput
 from clutchwork.sweeps.mistakes import MOST_PROBLEMS, few
+from clutchwork.sweeps.system_words import Axis, Line, SystemLayout
 from clutchwork.sweeps.variants import Codes, Variants, Varied
-from clutchwork.sweeps.words import Axis, Layout, Line
 
 if TYPE_CHECKING:
     from clutchwork.assembly.system import System
@@ -137,7 +137,7 @@ class Plan:
 
     def _of_lines(self, group: Sequence[Varied], owner: Any, changes: Sequence[Line], codes: Codes) -> Axis:
         """The axis that gives an element other values."""
-        driven, where = Driven.of(owner, changes[0][0][0][0]), self.base.numbered
+        driven, where = IndependentInput.of(owner, changes[0][0][0][0]), self.base.numbered
         if driven is not None and driven.fits(changes):
             found = driven.patches(where, changes, MOST_PROBLEMS)
         else:
@@ -173,8 +173,8 @@ class Plan:
         return made
 
     @cached_property
-    def _layout(self) -> Layout:
-        return Layout.of(self.base)
+    def _layout(self) -> SystemLayout:
+        return SystemLayout.of(self.base)
 
     def _together(self) -> Iterable[Problem]:
         """Mistakes of values that are right one by one, where an element or its friction law has rules between them."""
@@ -316,7 +316,7 @@ def _entangled(aim: Target) -> bool:
 
 
 def _holds_points(aim: Target, values: Sequence[Any]) -> bool:
-    """Whether values are curves or friction laws, whose points may be more or fewer; those of signals are counted."""
+    """Whether values are curves or friction laws, whose number of points may differ from variant to variant."""
     thing = aim.owner
     for name in aim.path:
         if isinstance(thing, Signal):

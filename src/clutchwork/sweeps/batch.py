@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 
 from clutchwork.assembly.wiring import row_columns
 from clutchwork.base.errors import UseError, near
-from clutchwork.base.shown import listed
+from clutchwork.base.quote import listed
 from clutchwork.declare.core import core
 from clutchwork.declare.layout import DONE, INTERRUPTED
 from clutchwork.results.channels import Channels, channels
@@ -25,7 +25,7 @@ from clutchwork.sweeps.parts import PARTS, squared_jerk, steps_of
 if TYPE_CHECKING:
     from clutchwork.assembly.system import System
     from clutchwork.declare.options import Options
-    from clutchwork.sweeps.words import Axis
+    from clutchwork.sweeps.system_words import Axis
 
 Array = NDArray[Any]
 Progress = Callable[[int], None]
@@ -41,7 +41,7 @@ IN_STEPS = (Extreme, SquaredJerk)
 
 
 @dataclass(frozen=True)
-class Way:
+class RunSetup:
     """How the core is to run: up to when, with which options, on how many threads."""
 
     t_end: float
@@ -50,7 +50,7 @@ class Way:
 
 
 @dataclass(frozen=True, eq=False)
-class Wanted:
+class CoreOutputs:
     """The outputs that the core gives, and the rows they need."""
 
     outputs: Mapping[str, Output]
@@ -60,7 +60,7 @@ class Wanted:
     t_end: float
 
     @classmethod
-    def of(cls, system: System, options: Options, outputs: Mapping[str, Output], t_end: float) -> Wanted:
+    def of(cls, system: System, options: Options, outputs: Mapping[str, Output], t_end: float) -> CoreOutputs:
         """Of a System, without those that need a Trajectory."""
         known = channels(system, options.angles, options.work)
         native = {name: one for name, one in outputs.items() if not isinstance(one, Computed)}
@@ -145,7 +145,7 @@ class Block:
 class Batch:
     """All variants of a plan, block by block."""
 
-    def __init__(self, plan: Plan, wanted: Wanted, way: Way) -> None:
+    def __init__(self, plan: Plan, wanted: CoreOutputs, way: RunSetup) -> None:
         self.plan, self.wanted, self.way = plan, wanted, way
 
     @property
@@ -269,7 +269,7 @@ class Forms:
     """How signals follow from the columns that are kept, for each variant of a block."""
 
     def __init__(
-        self, plan: Plan, wanted: Wanted, first: int, last: int, systems: Sequence[System], base: NDArray[np.int64]
+        self, plan: Plan, wanted: CoreOutputs, first: int, last: int, systems: Sequence[System], base: NDArray[np.int64]
     ) -> None:
         self.wanted, self.first = wanted, first
         made = dict[tuple[str, ...], tuple[list[Channels], NDArray[np.int64]]]()
@@ -339,7 +339,7 @@ def _finite(rows: Array) -> Array:
 
 
 def _set_grid(
-    block: Block, call: Call, name: str, one: Output, wanted: Wanted, values: Array, reached: Array | None
+    block: Block, call: Call, name: str, one: Output, wanted: CoreOutputs, values: Array, reached: Array | None
 ) -> None:
     there = np.ones(values.shape, dtype=bool) if reached is None else reached
     if isinstance(one, AtTimes):
@@ -382,7 +382,7 @@ def _squared(times: Array, values: Array, starts: Array) -> Array:
     return np.array(found, dtype=float)
 
 
-def _from_events(block: Block, call: Call, wanted: Wanted, found: Native) -> None:
+def _from_events(block: Block, call: Call, wanted: CoreOutputs, found: Native) -> None:
     """Times of events."""
     events = np.concatenate([part[4] for part in found.parts]) if found.parts else np.zeros((0, 5))
     for name, one in wanted.outputs.items():

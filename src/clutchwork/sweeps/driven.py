@@ -9,24 +9,24 @@ from typing import TYPE_CHECKING, Any
 from clutchwork.assembly.inputs import plain_signal
 from clutchwork.assembly.patches import Numbered, Patch, signal_patches
 from clutchwork.base.errors import ModelError, Problem
-from clutchwork.declare.given import settled
 from clutchwork.declare.node import Component, Signal
 from clutchwork.declare.schema import Spec, specs
-from clutchwork.declare.speech import path_of
+from clutchwork.declare.to_si import settled
+from clutchwork.declare.wording import path_of
 from clutchwork.model.changes import renewed
 from clutchwork.model.fields import At, signal_problems
 from clutchwork.model.numbers import is_right
 from clutchwork.sweeps.mistakes import few
 
 if TYPE_CHECKING:
-    from clutchwork.sweeps.words import Line
+    from clutchwork.sweeps.system_words import Line
 
 # what an element may make of its inputs before a run
 HOOKS = ("problems", "initial_states", "state_scales")
 
 
 @dataclass(frozen=True, eq=False)
-class Driven:
+class IndependentInput:
     """An input of an element that nothing else of the element depends on."""
 
     owner: Component
@@ -35,7 +35,7 @@ class Driven:
     given: Any
 
     @classmethod
-    def of(cls, owner: Any, name: str) -> Driven | None:
+    def of(cls, owner: Any, name: str) -> IndependentInput | None:
         """The input of a name; None where it is something else, or more follows from it."""
         kind = type(owner)
         if not isinstance(owner, Component) or kind.hooks or kind.ways:

@@ -1,4 +1,4 @@
-"""The runs of a sweep on the workers of an engine, chunk by chunk; the same bits as in this process."""
+"""The runs of a sweep on the workers of an executor, chunk by chunk; the same bits as in this process."""
 
 from __future__ import annotations
 
@@ -7,21 +7,21 @@ from contextlib import closing
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
-from clutchwork.engines.choice import engine
-from clutchwork.engines.pace import chunk_size
+from clutchwork.executors.choice import executor
+from clutchwork.executors.pace import chunk_size
 from clutchwork.sweeps.batch import Block
-from clutchwork.sweeps.order import refuse_unfit
+from clutchwork.sweeps.request import refuse_unfit
 from clutchwork.sweeps.result import Missing, Sweep
 from clutchwork.sweeps.runs import ended, run_all
 from clutchwork.sweeps.variants import Variants
 
 if TYPE_CHECKING:
-    from clutchwork.engines.engine import Alive
-    from clutchwork.sweeps.order import Order
+    from clutchwork.executors.executor import Alive
+    from clutchwork.sweeps.request import Order
 
 
 @dataclass(frozen=True, eq=False)
-class Piece:
+class VariantChunk:
     """Consecutive variants."""
 
     first: int
@@ -29,7 +29,7 @@ class Piece:
 
 
 @dataclass(frozen=True, eq=False)
-class Found:
+class ChunkResult:
     """What a worker found of a piece."""
 
     block: Block
@@ -41,7 +41,7 @@ def run_on(order: Order, on: Any, threads: int, asked: int | None, told: Callabl
     whole = order.whole
     made, done, job = Sweep.empty(whole), 0, order.without_variants
     refuse_unfit(order.system, whole.variants)
-    with engine("sweep", on, threads, asked) as workers:
+    with executor("sweep", on, threads, asked) as workers:
         try:
             size = chunk_size(workers, job, len(order), lambda count: worked(job, _piece(order, 0, count)))
             with closing(workers.run(worked, job, pieces(order, size))) as all_found:
@@ -56,18 +56,18 @@ def run_on(order: Order, on: Any, threads: int, asked: int | None, told: Callabl
     return made
 
 
-def pieces(order: Order, size: int) -> Iterator[Piece]:
+def pieces(order: Order, size: int) -> Iterator[VariantChunk]:
     """All variants, so many at a time."""
     return (_piece(order, first, min(first + size, len(order))) for first in range(0, len(order), size))
 
 
-def _piece(order: Order, first: int, last: int) -> Piece:
-    return Piece(first, order.source.part(first, last))
+def _piece(order: Order, first: int, last: int) -> VariantChunk:
+    return VariantChunk(first, order.source.part(first, last))
 
 
-def worked(job: Order, piece: Piece, alive: Alive | None = None) -> Found:
+def worked(job: Order, piece: VariantChunk, alive: Alive | None = None) -> ChunkResult:
     """What a worker does with a piece."""
     told = (lambda _: None) if alive is None else (lambda _: alive())
     made = run_all(job.of(piece.variants), 1, told)
     problems = [one._replace(variant=piece.first + one.variant) for one in made.problems]
-    return Found(Block(piece.first, made.codes, made.detail, made.values, None), problems)
+    return ChunkResult(Block(piece.first, made.codes, made.detail, made.values, None), problems)

@@ -14,7 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from clutchwork.base.errors import UseError
-from clutchwork.base.shown import shown
+from clutchwork.base.quote import quote
 from clutchwork.declare.calls import explained
 from clutchwork.declare.options import instants
 from clutchwork.sweeps import parts
@@ -42,7 +42,7 @@ class AtEnd:
         return self.signal
 
     def of(self, run: Trajectory) -> Any:
-        """Its value in a run; NaN where that did not reach its end."""
+        """Its value in a run; NaN where the run did not finish."""
         return run[self.signal][-1].item() if run.finished else _missing(run, self.signal)
 
 
@@ -108,7 +108,7 @@ class Integral:
         return next((name for name in found if name in names), "")
 
     def of(self, run: Trajectory) -> Any:
-        """Its value in a run; NaN where that did not reach its end."""
+        """Its value in a run; NaN where the run did not finish."""
         values = run.at([run.options.t_start, run.t_end])[self.kept_as(run)]
         return (values[-1] - values[0]).item() if run.finished else np.nan
 
@@ -130,7 +130,7 @@ class SquaredJerk:
         return f"{self.shaft}.acceleration"
 
     def of(self, run: Trajectory) -> float:
-        """Its value in a run; NaN where that did not reach its end."""
+        """Its value in a run; NaN where the run did not finish."""
         if not run.finished:
             return float("nan")
         times, begins = parts.in_parts(run.repeat(None).time)
@@ -178,7 +178,7 @@ class Computed:
         """The value where it is a single one; UseError for any other."""
         if isinstance(value, list | tuple | set | dict) or getattr(value, "ndim", None):
             remedy = "give one number for each variant; cw.at(signal, times) gives a signal at several instants"
-            raise UseError("sweep", [f"the output {self.name!r} gave {shown(value)}: {remedy}"])
+            raise UseError("sweep", [f"the output {self.name!r} gave {quote(value)}: {remedy}"])
         return value.item() if getattr(value, "shape", None) == () else value
 
 
@@ -199,7 +199,7 @@ def at(signal: str, times: Sequence[float] | float) -> AtTimes:
     except (TypeError, ValueError):
         found = ()
     if not found or not all(0.0 <= time < np.inf for time in found) or list(found) != sorted(found):
-        raise UseError("at", [f"times are {shown(times)}: give instants [s] from zero on that rise"])
+        raise UseError("at", [f"times are {quote(times)}: give instants [s] from zero on that rise"])
     return AtTimes(signal, found)
 
 
@@ -258,13 +258,13 @@ def break_away(contact: str, number: int = 1) -> When:
 
 def _named(call: str, name: object) -> str:
     if not isinstance(name, str):
-        raise UseError(call, [f"{shown(name)} is not a name; give one such as 'shaft.torque'"])
+        raise UseError(call, [f"{quote(name)} is not a name; give one such as 'shaft.torque'"])
     return name
 
 
 def _counted(call: str, number: object) -> int:
     if not isinstance(number, int) or isinstance(number, bool) or number == 0:
-        raise UseError(call, [f"number is {shown(number)}: give 1 for the first, -1 for the last"])
+        raise UseError(call, [f"number is {quote(number)}: give 1 for the first, -1 for the last"])
     return number
 
 
@@ -300,7 +300,7 @@ def _output(one: Any) -> Output:
         rest = "; take cw.squared_jerk of the shaft, or cw.peak of its acceleration" if "jerk" in one.name else ""
         raise UseError("sweep", [f"{one.name} is for calibrate alone{rest}"])
     remedy = "give the name of a signal, cw.at, cw.maximum, cw.lock ... of one, or a function of the run"
-    raise UseError("sweep", [f"{shown(one)} is not an output; {remedy}"])
+    raise UseError("sweep", [f"{quote(one)} is not an output; {remedy}"])
 
 
 def _missing(run: Trajectory, signal: str) -> Any:

@@ -11,11 +11,11 @@ import numpy as np
 
 from clutchwork.base import shell
 from clutchwork.base.errors import UseError, near
+from clutchwork.base.plural import columns, counted
 from clutchwork.base.shell import DONE, INTERRUPTED, STOPPED
-from clutchwork.base.text import columns, counted
 from clutchwork.declare.options import instants
-from clutchwork.declare.speech import words_of_files
 from clutchwork.declare.units import split
+from clutchwork.declare.wording import words_of_files
 from clutchwork.face.driveline import Driveline
 from clutchwork.run.flags import given_options
 from clutchwork.sweeps import outputs as made

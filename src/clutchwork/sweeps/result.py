@@ -14,8 +14,8 @@ from numpy.typing import NDArray
 from clutchwork.base.errors import ModelError, UnknownName, UseError, near
 from clutchwork.base.extras import need
 from clutchwork.base.paths import fitting
-from clutchwork.base.shown import shown
-from clutchwork.base.text import counted
+from clutchwork.base.plural import counted
+from clutchwork.base.quote import quote
 from clutchwork.base.writing import put_csv, replaced
 from clutchwork.declare.calls import explained, explained_methods
 from clutchwork.declare.layout import DONE, INTERRUPTED, STATUSES
@@ -163,7 +163,7 @@ class Sweep:
         """An output of all variants, in the shape of the grid; KeyError with near names when there is none."""
         if name not in self.swept.outputs:
             known = (*self.swept.outputs, *self.varied)
-            raise UnknownName(f"no output {shown(name)}{near(name, known, '`sweep.names` lists all outputs')}")
+            raise UnknownName(f"no output {quote(name)}{near(name, known, '`sweep.names` lists all outputs')}")
         values = self.flat(name)
         return values.reshape((*self.shape, *values.shape[1:]))
 
@@ -184,7 +184,7 @@ class Sweep:
         if isinstance(number, int | np.integer) and not isinstance(number, bool) and -len(self) <= number < len(self):
             return int(number)
         remedy = f"give a whole number from 0 to {len(self) - 1}" if len(self) else "the sweep has no variants"
-        raise UseError("sweep", [f"there is no variant {shown(number)}; {remedy}"])
+        raise UseError("sweep", [f"there is no variant {quote(number)}; {remedy}"])
 
     def run(self, number: int) -> Trajectory:
         """The run of one variant, as `simulate` gives it."""
@@ -266,7 +266,7 @@ class Sweep:
 
     def _unknown(self, name: str) -> str:
         known = self.swept.outputs
-        return f"no output {shown(name)}{near(name, known, '`sweep.names` lists all outputs')}"
+        return f"no output {quote(name)}{near(name, known, '`sweep.names` lists all outputs')}"
 
     def to_pandas(self, names: Any = None) -> Any:
         """A pandas DataFrame with one line for each variant; `attrs["units"]` holds the units. Needs pandas.

@@ -8,12 +8,12 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from clutchwork.base.shown import shown
+from clutchwork.base.quote import quote
 from clutchwork.declare.layout import INTERRUPTED
 from clutchwork.declare.node import Signal
 from clutchwork.run.control import controllers
 from clutchwork.sweeps.axes import Plan
-from clutchwork.sweeps.batch import Batch, Wanted, Way
+from clutchwork.sweeps.batch import Batch, CoreOutputs, RunSetup
 from clutchwork.sweeps.outputs import Computed, Output
 from clutchwork.sweeps.result import Missing, Sweep, SweepInterrupted, Swept
 
@@ -28,12 +28,12 @@ Shown = Callable[[int], None]
 def run_all(swept: Swept, threads: int, told: Shown) -> Sweep:
     """The result for all variants; SweepInterrupted with what is done after Ctrl-C."""
     made, plan = Sweep.empty(swept), Plan.of(swept.system, swept.variants)
-    wanted = Wanted.of(swept.system, swept.options, swept.outputs, swept.t_end)
+    wanted = CoreOutputs.of(swept.system, swept.options, swept.outputs, swept.t_end)
     # what calls Python in a run cannot be on several threads
     alone = in_python(swept) or not wanted.outputs
     computed = {name: one for name, one in swept.outputs.items() if alone or isinstance(one, Computed)}
     if not alone:
-        raised = _in_core(made, Batch(plan, wanted, Way(swept.t_end, swept.options, threads)), told, not computed)
+        raised = _in_core(made, Batch(plan, wanted, RunSetup(swept.t_end, swept.options, threads)), told, not computed)
         if raised is not None:
             return ended(made, raised)
     if computed:
@@ -71,7 +71,7 @@ def _one_by_one(made: Sweep, plan: Plan, outputs: Mapping[str, Output], told: Sh
         except KeyboardInterrupt as stop:
             ended(made, stop)
         except Exception as error:
-            error.add_note(f"in variant {number} of the sweep: {shown(plan.variants[number])}")
+            error.add_note(f"in variant {number} of the sweep: {quote(plan.variants[number])}")
             raise
         made.take_one(number, found, run.status)
         told(number + 1)

@@ -13,8 +13,8 @@ from clutchwork.declare.calls import explained
 from clutchwork.declare.options import Options
 from clutchwork.run.simulation import Assembles
 from clutchwork.sweeps.elsewhere import run_on
-from clutchwork.sweeps.order import ordered, threads_of
 from clutchwork.sweeps.outputs import Asked
+from clutchwork.sweeps.request import ordered, threads_of
 from clutchwork.sweeps.result import OutputWarning, Sweep
 from clutchwork.sweeps.runs import run_all
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any, Protocol
 
 from clutchwork.base import html
-from clutchwork.base.text import columns, counted
+from clutchwork.base.plural import columns, counted
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence

@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from clutchwork.base.errors import UseError
-from clutchwork.base.shown import shown
+from clutchwork.base.quote import quote
 from clutchwork.declare.calls import explained
 from clutchwork.model import changes
 from clutchwork.model.changes import Target, named, target
@@ -75,7 +75,7 @@ class Variants:
         return replace(self, varied=tuple(_in_si(one, target(owners, one.name)) for one in self.varied))
 
 
-class Source(Protocol):
+class VariantSource(Protocol):
     """Where variants come from, as many at a time as are asked for."""
 
     def __len__(self) -> int: ...
@@ -83,7 +83,7 @@ class Source(Protocol):
     def part(self, first: int, last: int) -> Variants:
         """Variants from first to last."""
 
-    def in_si(self, model: Model) -> Source:
+    def in_si(self, model: Model) -> VariantSource:
         """The same with values of SI where they have units that fit."""
 
 
@@ -108,7 +108,7 @@ def variants(columns: Mapping[str, Any]) -> Variants:
     Parameters: columns, values by name: {"c1.gain": [...], "engine.inertia": [...]}.
     """
     if not isinstance(columns, Mapping) or not columns:
-        raise UseError("variants", [f"{shown(columns)} is not a table; give columns by name"])
+        raise UseError("variants", [f"{quote(columns)} is not a table; give columns by name"])
     listed = {name: _listed(name, values, labelled=False)[0] for name, values in columns.items()}
     _refuse_empty([name for name, values in listed.items() if not values])
     lengths = {name: len(values) for name, values in listed.items()}
@@ -118,10 +118,10 @@ def variants(columns: Mapping[str, Any]) -> Variants:
     return Variants(tuple(_column(name, values) for name, values in listed.items()), next(iter(lengths.values())))
 
 
-def given(vary: Any) -> Source:
+def given(vary: Any) -> VariantSource:
     """The variants that a call means: a design, a grid, a table, or a list with the values of each."""
     if isinstance(vary, Variants) or hasattr(vary, "part"):
-        return cast("Source", vary)
+        return cast("VariantSource", vary)
     if hasattr(vary, "columns") and hasattr(vary, "iloc"):
         # a DataFrame of pandas, or what looks like one
         return variants({str(name): vary[name].tolist() for name in vary.columns})
@@ -130,7 +130,7 @@ def given(vary: Any) -> Source:
     if isinstance(vary, Sequence) and not isinstance(vary, str) and all(isinstance(one, Mapping) for one in vary):
         return _of_list(vary)
     remedy = "give values by name, a list of variants, cw.variants({...}), cw.design({...}, 1000) or a DataFrame"
-    raise UseError("sweep", [f"vary is {shown(vary)}: {remedy}"])
+    raise UseError("sweep", [f"vary is {quote(vary)}: {remedy}"])
 
 
 def _in_si(one: Varied, aim: Target | None) -> Varied:
@@ -172,11 +172,11 @@ def _of_list(rows: Sequence[Mapping[str, Any]]) -> Variants:
 def _listed(name: object, values: Any, *, labelled: bool = True) -> tuple[tuple[Any, ...], tuple[Any, ...]]:
     """Values and what to call each: themselves, the keys of a mapping, or their places."""
     if not isinstance(name, str):
-        raise UseError("sweep", [f"{shown(name)} is not a name; names are such as 'c1.gain'"])
+        raise UseError("sweep", [f"{quote(name)} is not a name; names are such as 'c1.gain'"])
     if labelled and isinstance(values, Mapping):
         return tuple(values.values()), tuple(map(str, values))
     if isinstance(values, str) or not hasattr(values, "__len__") or not hasattr(values, "__iter__"):
-        raise UseError("sweep", [f"{name}: {shown(values)} is not a list of values; write [...] around it"])
+        raise UseError("sweep", [f"{name}: {quote(values)} is not a list of values; write [...] around it"])
     plain = tuple(values.tolist() if hasattr(values, "tolist") else values)
     return plain, _labels(plain)
 

@@ -20,7 +20,7 @@ from numpy.typing import NDArray
 
 import clutchwork as cw
 from clutchwork.gradients.exact import Exact
-from clutchwork.gradients.stencils import weights
+from clutchwork.gradients.finite_differences import weights
 from support import by_differences, free_numbers, gradient_cases
 from support.any_model import agree, judge, model
 from support.by_differences import TIGHT

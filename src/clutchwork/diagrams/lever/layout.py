@@ -11,7 +11,7 @@ from clutchwork.diagrams.letters import width_of
 from clutchwork.diagrams.lever.heights import PITCH, Hung, hung
 from clutchwork.diagrams.lever.points import levers
 from clutchwork.diagrams.marks import SMALL
-from clutchwork.diagrams.stick.bodies import Body, Node, Piece
+from clutchwork.diagrams.stick.bodies import Body, MemberPiece, Node
 from clutchwork.diagrams.stick.improve import routed
 from clutchwork.diagrams.stick.layout import Layout, laid, used
 from clutchwork.diagrams.stick.route import NoRoomError, Router
@@ -92,9 +92,9 @@ def _row(rows: Sequence[float], height: float) -> int:
     return min(range(len(rows)), key=lambda number: abs(rows[number] - height))
 
 
-def _piece(member: str, left: Node, width: int) -> Piece:
+def _piece(member: str, left: Node, width: int) -> MemberPiece:
     point, right = (left[0] + 1, left[1]), (left[0] + width, left[1])
-    return Piece(member, point, ((left, point), (point, right)), (left, right))
+    return MemberPiece(member, point, ((left, point), (point, right)), (left, right))
 
 
 def _plan(router: Router, made: Sequence[Hung], bodies: Sequence[Body], rows: Sequence[float]) -> Layout:

@@ -9,7 +9,7 @@ from clutchwork.diagrams.letters import width_of
 from clutchwork.diagrams.marks import FAINT, GREY, HELD, IDLE, INK, NAME, POWER, SMALL, Mark, Pen, around
 from clutchwork.diagrams.power import sources
 from clutchwork.diagrams.title import draw_legend, draw_title
-from clutchwork.schematic.pen import Box
+from clutchwork.schematic.pen import Rect
 
 if TYPE_CHECKING:
     from clutchwork.gearbox.definition import Definition
@@ -40,7 +40,7 @@ def painted(box: Definition, states: Sequence[GearState], now: GearState | None)
             _draw_bar(pen, left + COLUMN * (number + 0.5), y, speed, unit, power)
         y += 8.0 + unit * max(0.0, *(-speed for speed in speeds)) + (LEAST if min(speeds) < 0 else 0.0)
     pen.label(left, y + 10.0, "speed over that of the input", SMALL, GREY, anchor="start")
-    draw_legend(pen, Box(0.0, 0.0, right, y + 10.0), LEGEND)
+    draw_legend(pen, Rect(0.0, 0.0, right, y + 10.0), LEGEND)
     draw_title(pen, around(pen.marks), box, now)
     return pen.marks
 
@@ -51,6 +51,6 @@ def _draw_bar(pen: Pen, x: float, y: float, speed: float, unit: float, power: fl
     if colour == HELD:
         pen.line((x - 0.5 * BAR, y), (x + 0.5 * BAR, y), colour=HELD, width=3.0)
     else:
-        pen.rectangle(Box(x - 0.5 * BAR, min(y, end), x + 0.5 * BAR, max(y, end)), colour)
+        pen.rectangle(Rect(x - 0.5 * BAR, min(y, end), x + 0.5 * BAR, max(y, end)), colour)
     text = f"{speed:.3f}".replace("-", "\N{MINUS SIGN}") if colour != HELD else "0"
     pen.label(x, end - 3.5 if speed >= 0 else end + 9.5, text, SMALL, INK)

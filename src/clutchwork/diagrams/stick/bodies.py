@@ -35,7 +35,7 @@ class Planet(NamedTuple):
 
 
 @dataclass(frozen=True)
-class Piece:
+class MemberPiece:
     """What a member has in a set: where its power enters, its lines, and the ends that others join."""
 
     member: str
@@ -53,7 +53,7 @@ class Body:
     top: int
     bars: list[Bar] = field(default_factory=list)
     planets: list[Planet] = field(default_factory=list)
-    pieces: dict[Source, Piece] = field(default_factory=dict)
+    pieces: dict[Source, MemberPiece] = field(default_factory=dict)
     solid: set[Node] = field(default_factory=set)
     # planets that turn together, by the columns of the first and the last wheel and their row
     joined: list[tuple[Node, Node]] = field(default_factory=list)
@@ -73,9 +73,9 @@ class Body:
             start = (one.at[0] + one.wide if mirrored else one.at[0], one.at[1])
             return one._replace(at=to(start))
 
-        def piece(one: Piece) -> Piece:
+        def piece(one: MemberPiece) -> MemberPiece:
             lines = tuple((to(a), to(b)) for a, b in one.lines)
-            return Piece(one.member, to(one.root), lines, tuple(to(end) for end in one.ends))
+            return MemberPiece(one.member, to(one.root), lines, tuple(to(end) for end in one.ends))
 
         joined = [tuple(sorted((to(a), to(b)))) for a, b in self.joined]
         return Body(
@@ -117,7 +117,7 @@ def _wheel(made: Body, one: GearSet, port: str, at: Node, *, up: bool) -> None:
     column, row = at
     end = (column, row - 1) if up else (column, row + 1)
     made.bars.append(Bar((one.name, port), at, up))
-    made.pieces[one.name, port] = Piece(one.members[port], at, ((at, end),), (end,))
+    made.pieces[one.name, port] = MemberPiece(one.members[port], at, ((at, end),), (end,))
     if one.members[port] == HOUSING:
         made.solid.update((column + n, end[1] + step) for n in (-1, 0, 1) for step in ((0, -1) if up else (0, 1)))
 
@@ -125,7 +125,7 @@ def _wheel(made: Body, one: GearSet, port: str, at: Node, *, up: bool) -> None:
 def _pin(made: Body, source: Source, member: str, middle: Node, more: tuple[tuple[Node, Node], ...] = ()) -> None:
     """A pin through planets, from edge to edge of the set."""
     left, right = (0, middle[1]), (made.width, middle[1])
-    made.pieces[source] = Piece(member, middle, ((left, middle), (middle, right), *more), (left, right))
+    made.pieces[source] = MemberPiece(member, middle, ((left, middle), (middle, right), *more), (left, right))
 
 
 def _cover(made: Body, left: int, right: int, low: int, high: int) -> None:

@@ -11,7 +11,7 @@ from clutchwork.diagrams.stick.board import Edge
 from clutchwork.diagrams.stick.bodies import Body, Node, bodies
 from clutchwork.diagrams.stick.improve import routed
 from clutchwork.diagrams.stick.route import NoRoomError, Router
-from clutchwork.diagrams.stick.search import Symbol
+from clutchwork.diagrams.stick.search import ShiftSymbol
 from clutchwork.diagrams.stick.spots import CELL
 from clutchwork.gearbox.definition import Definition
 from clutchwork.gearbox.gear_set import HOUSING
@@ -26,7 +26,7 @@ class Layout:
 
     bodies: tuple[Body, ...]
     lines: Mapping[str, frozenset[Edge]]
-    symbols: Mapping[str, Symbol]
+    symbols: Mapping[str, ShiftSymbol]
     gates: Mapping[str, Node]
     ends: Mapping[Node, str]  # whose line ends there: at sets, at symbols, at the edges
     roots: Mapping[tuple[str, str], Node]  # by set and port

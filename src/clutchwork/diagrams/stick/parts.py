@@ -11,7 +11,7 @@ from clutchwork.diagrams.stick import symbols
 from clutchwork.diagrams.stick.board import STEPS
 from clutchwork.diagrams.stick.looks import Scene
 from clutchwork.diagrams.stick.route import IN
-from clutchwork.diagrams.stick.search import Symbol
+from clutchwork.diagrams.stick.search import ShiftSymbol
 from clutchwork.diagrams.stick.wheels import ground
 from clutchwork.gearbox.gear_set import HOUSING
 
@@ -54,7 +54,7 @@ def _draw_element(pen: Pen, scene: Scene, element: ShiftElement) -> None:
     _draw_name(pen, scene, element, symbol)
 
 
-def _draw_name(pen: Pen, scene: Scene, element: ShiftElement, symbol: Symbol) -> None:
+def _draw_name(pen: Pen, scene: Scene, element: ShiftElement, symbol: ShiftSymbol) -> None:
     closed = scene.now is None or element.name in scene.now.closed
     x, y = scene.at(symbol.middle)
     right, above = symbol.label[0] > symbol.middle[0], symbol.label[1] > symbol.middle[1]
@@ -71,7 +71,7 @@ def _far(one: Point, other: Point) -> float:
     return hypot(one[0] - other[0], one[1] - other[1])
 
 
-def _looks(scene: Scene, element: ShiftElement, symbol: Symbol) -> symbols.Looks:
+def _looks(scene: Scene, element: ShiftElement, symbol: ShiftSymbol) -> symbols.Looks:
     """Colours and widths of a symbol, its first end first."""
     if scene.now is None:
         return symbols.Looks()

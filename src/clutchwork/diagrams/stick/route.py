@@ -7,8 +7,8 @@ from itertools import pairwise
 from math import inf
 
 from clutchwork.diagrams.stick.board import CROSSING, Board, Edge, edge, edges
-from clutchwork.diagrams.stick.bodies import Body, Node, Piece
-from clutchwork.diagrams.stick.search import BEND, Symbol, Task, Way, find
+from clutchwork.diagrams.stick.bodies import Body, MemberPiece, Node
+from clutchwork.diagrams.stick.search import BEND, Query, Route, ShiftSymbol, find
 from clutchwork.diagrams.stick.spots import below_housing, between_members, on_housing
 from clutchwork.gearbox.definition import Definition, ShiftElement
 from clutchwork.gearbox.gear_set import HOUSING
@@ -27,7 +27,7 @@ class Router:
     def __init__(self, box: Definition, bodies: Sequence[Body], board: Board) -> None:
         self.box = box
         self.board = board
-        self.symbols: dict[str, Symbol] = {}
+        self.symbols: dict[str, ShiftSymbol] = {}
         self.gates: dict[str, Node] = {}
         self.limit = inf  # what a way may cost
         self.fixed: dict[str, set[Edge]] = {member: set() for member in box.members}
@@ -103,7 +103,7 @@ class Router:
             joinable = self.board.nodes(member)
             ways = find(
                 self.board,
-                Task((member, member), parts[0] & joinable, set().union(*parts[1:]) & joinable, limit=self.limit),
+                Query((member, member), parts[0] & joinable, set().union(*parts[1:]) & joinable, limit=self.limit),
             )
             if ways is None:
                 raise NoRoomError
@@ -140,7 +140,7 @@ class Router:
         if nodes:
             way = find(
                 self.board,
-                Task((member, member), nodes, set(goals), price=lambda node: HIGHER * node[1], limit=self.limit),
+                Query((member, member), nodes, set(goals), price=lambda node: HIGHER * node[1], limit=self.limit),
             )
             if way is None:
                 raise NoRoomError
@@ -180,13 +180,13 @@ class Router:
             toward = []
             placer, goals = between_members(self.board, element.name), self.board.nodes(second)
         way = find(
-            self.board, Task((first, second), self.board.nodes(first), goals, placer, limit=self.limit, toward=toward)
+            self.board, Query((first, second), self.board.nodes(first), goals, placer, limit=self.limit, toward=toward)
         )
         if way is None or way.symbol is None:
             raise NoRoomError(element.name)
         self._put(element, first, second, way, way.symbol)
 
-    def _put(self, element: ShiftElement, first: str, second: str, way: Way, symbol: Symbol) -> None:
+    def _put(self, element: ShiftElement, first: str, second: str, way: Route, symbol: ShiftSymbol) -> None:
         self._draw(first, way.before)
         self.board.set_end(symbol.first, first)
         if second != HOUSING:
@@ -206,6 +206,6 @@ class Router:
                 self._prune(member)
 
 
-def pairwise_nodes(piece: Piece) -> list[Edge]:
+def pairwise_nodes(piece: MemberPiece) -> list[Edge]:
     """The edges of all lines of a piece."""
     return [part for line in piece.lines for part in edges(*line)]

@@ -18,7 +18,7 @@ BACK = (1, 0, 3, 2)
 MOST_BANNED = 12
 
 
-class Symbol(NamedTuple):
+class ShiftSymbol(NamedTuple):
     """A shift element on the grid: its ends, the cells that it covers, and where its name stands."""
 
     first: Node
@@ -34,25 +34,25 @@ class Symbol(NamedTuple):
         return self.first[0] + a, self.first[1] + b
 
 
-class Way(NamedTuple):
+class Route(NamedTuple):
     """Nodes of a way, and the symbol between its first part and its second one."""
 
     cost: float
     before: tuple[Node, ...]
     after: tuple[Node, ...] = ()
-    symbol: Symbol | None = None
+    symbol: ShiftSymbol | None = None
 
 
 # node, direction, symbol that was placed
-_State = tuple[Node, int, Symbol | None]
+_State = tuple[Node, int, ShiftSymbol | None]
 BEGIN = -1  # where a start was reached from
 
 # symbols that may be placed from a node in a direction
-Placer = Callable[[Node, int], Iterator[Symbol]]
+Placer = Callable[[Node, int], Iterator[ShiftSymbol]]
 
 
 @dataclass(frozen=True)
-class Task:
+class Query:
     """A way that is sought: from one of some nodes to a goal, through one symbol where a placer is given.
 
     Parameters: members, before and behind the symbol; placer, symbols that may stand at a node; price, what a goal
@@ -68,26 +68,26 @@ class Task:
     limit: float = inf
     toward: Collection[Node] = ()
 
-    def ends(self, node: Node, way: int, symbol: Symbol | None) -> bool:
+    def ends(self, node: Node, way: int, symbol: ShiftSymbol | None) -> bool:
         """Whether a way may end there."""
         if way == NO_WAY or (self.placer is not None and symbol is None):
             return False
         return node in self.goals if self.goals else symbol is not None
 
 
-def find(board: Board, task: Task) -> Way | None:
+def find(board: Board, task: Query) -> Route | None:
     """The cheapest way; None: there is none."""
-    banned, spots = set[Symbol](), dict[tuple[Node, int], list[Symbol]]()
+    banned, spots = set[ShiftSymbol](), dict[tuple[Node, int], list[ShiftSymbol]]()
     least = _least(board, task) if task.limit < inf else {}
     for _ in range(MOST_BANNED):
-        found = _Search(board, task, banned, spots, least).run()
+        found = _RouteSearch(board, task, banned, spots, least).run()
         if found is None or found.symbol is None or _clean(found, found.symbol):
             return found
         banned.add(found.symbol)
     return None
 
 
-def _least(board: Board, task: Task) -> dict[Node, float]:
+def _least(board: Board, task: Query) -> dict[Node, float]:
     """The least that is left to pay at a node: steps to the nearest goal around what is solid."""
     made = dict.fromkeys(task.goals or task.toward, 0.0)
     queue = deque(made)
@@ -103,22 +103,22 @@ def _least(board: Board, task: Task) -> dict[Node, float]:
     return made
 
 
-def _clean(way: Way, symbol: Symbol) -> bool:
+def _clean(way: Route, symbol: ShiftSymbol) -> bool:
     """Whether a way keeps clear of itself and of its own symbol."""
     nodes = [*way.before, *way.after]
     once = len(set(nodes)) == len(nodes) - (symbol.first == symbol.second)
     return once and not (set(nodes) - {symbol.first, symbol.second}) & symbol.cells
 
 
-class _Search:
+class _RouteSearch:
     """The method of Dijkstra over nodes, directions, and whether the symbol is placed; most time of a picture."""
 
     def __init__(
         self,
         board: Board,
-        task: Task,
-        banned: set[Symbol],
-        spots: dict[tuple[Node, int], list[Symbol]],
+        task: Query,
+        banned: set[ShiftSymbol],
+        spots: dict[tuple[Node, int], list[ShiftSymbol]],
         least: dict[Node, float],
     ) -> None:
         self.board, self.task, self.banned, self.spots, self.least = board, task, banned, spots, least
@@ -127,7 +127,7 @@ class _Search:
         # of each state in the order in which they were reached: where it was reached from
         self.reached: list[tuple[_State, int]] = []
 
-    def run(self) -> Way | None:
+    def run(self) -> Route | None:
         """The cheapest way."""
         for node in sorted(self.task.starts):
             self.push(0.0, (node, NO_WAY, None), BEGIN)
@@ -179,23 +179,23 @@ class _Search:
                     if one not in self.banned:
                         push(cost + 2.0, (one.second, way, one), number)
 
-    def symbols(self, placer: Placer, node: Node, way: int) -> list[Symbol]:
+    def symbols(self, placer: Placer, node: Node, way: int) -> list[ShiftSymbol]:
         """Symbols that may stand at a node."""
         key = (node, way)
         if key not in self.spots:
             self.spots[key] = [one for one in placer(node, way) if self.fits(one, way)]
         return self.spots[key]
 
-    def fits(self, symbol: Symbol, way: int) -> bool:
+    def fits(self, symbol: ShiftSymbol, way: int) -> bool:
         """Whether a symbol ends at the housing, on a free node or on the other member."""
         member = self.task.members[1]
         return symbol.second == symbol.first or self.board.cost(symbol.second, way, member) in (0.0, NEAR)
 
-    def back(self, cost: float, number: int) -> Way:
+    def back(self, cost: float, number: int) -> Route:
         """The way to a state."""
         nodes: list[list[Node]] = [[], []]
         (_, _, last), _ = self.reached[number]
         while number != BEGIN:
             (node, _, symbol), number = self.reached[number]
             nodes[symbol is not None].append(node)
-        return Way(cost, tuple(reversed(nodes[0])), tuple(reversed(nodes[1])), last)
+        return Route(cost, tuple(reversed(nodes[0])), tuple(reversed(nodes[1])), last)

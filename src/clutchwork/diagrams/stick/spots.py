@@ -8,7 +8,7 @@ from math import ceil
 from clutchwork.diagrams.letters import width_of
 from clutchwork.diagrams.stick.board import STEPS, Board
 from clutchwork.diagrams.stick.bodies import Node
-from clutchwork.diagrams.stick.search import Placer, Symbol
+from clutchwork.diagrams.stick.search import Placer, ShiftSymbol
 
 CELL = 12.0  # px from line to line
 BELOW = 2  # rows from the housing down to where a symbol begins
@@ -20,7 +20,7 @@ def between_members(board: Board, name: str) -> Placer:
     across = _reach(name)
     long = ceil(width_of(name, NAME, bold=True) / CELL)
 
-    def place(node: Node, way: int) -> Iterator[Symbol]:
+    def place(node: Node, way: int) -> Iterator[ShiftSymbol]:
         a, b = STEPS[way]
         middle, second = (node[0] + a, node[1] + b), (node[0] + 2 * a, node[1] + 2 * b)
         if not board.roomy(middle) or not board.inside(second) or second in board.solid:
@@ -36,7 +36,7 @@ def between_members(board: Board, name: str) -> Placer:
                 words = [(x + n * side, y) for n in range(2, 2 + long)]
                 plates = [(x + 1, y), (x - 1, y)]
             if all(board.roomy(cell) for cell in (*words, *plates)):
-                yield Symbol(node, second, way, label, frozenset((middle, *words, *plates)))
+                yield ShiftSymbol(node, second, way, label, frozenset((middle, *words, *plates)))
 
     return place
 
@@ -46,14 +46,14 @@ def on_housing(board: Board, name: str) -> Placer:
     across, top = _reach(name), board.rows - 1
     row = top - BELOW
 
-    def place(node: Node, way: int) -> Iterator[Symbol]:
+    def place(node: Node, way: int) -> Iterator[ShiftSymbol]:
         if way != 2 or node[1] != row:
             return
         x = node[0]
         words = [(x + n, top) for n in range(-across, across + 1)]
         cells = frozenset((*words, (x, top - 1), (x - 1, top - 1), (x + 1, top - 1)))
         if all(board.roomy(cell) for cell in cells):
-            yield Symbol(node, node, way, (x, top + 1), cells)
+            yield ShiftSymbol(node, node, way, (x, top + 1), cells)
 
     return place
 

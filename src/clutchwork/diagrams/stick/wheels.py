@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 from clutchwork.diagrams.marks import GREY, HELD, IDLE, INK, NAME, PAPER, POWER, SMALL, Pen, Point
-from clutchwork.diagrams.stick.bodies import Bar, Body, Piece, Planet
+from clutchwork.diagrams.stick.bodies import Bar, Body, MemberPiece, Planet
 from clutchwork.diagrams.stick.lines import MESH, place
 from clutchwork.diagrams.stick.looks import LOST, Scene
 from clutchwork.gearbox.gear_set import HOUSING
-from clutchwork.schematic.pen import Box
+from clutchwork.schematic.pen import Rect
 
 HALF = 8.0  # px, half the width of a wheel
 PIN, HATCH = 10.0, 5.0
@@ -21,7 +21,7 @@ def draw_body(pen: Pen, scene: Scene, body: Body) -> None:
             _draw_fixed(pen, scene, piece)
     for first, last in body.joined:
         (left, y), (right, _) = scene.at(first), scene.at(last)
-        pen.rectangle(Box(left, y - 3.0, right, y + 3.0), PAPER, _colour(scene, body), 1.3)
+        pen.rectangle(Rect(left, y - 3.0, right, y + 3.0), PAPER, _colour(scene, body), 1.3)
     for planet in body.planets:
         _draw_planet(pen, scene, body, planet)
     for bar in body.bars:
@@ -78,7 +78,7 @@ def _draw_planet(pen: Pen, scene: Scene, body: Body, planet: Planet) -> None:
             pen.dot(column, y, 2.6, PAPER, colour, 1.2)
 
 
-def _draw_fixed(pen: Pen, scene: Scene, piece: Piece) -> None:
+def _draw_fixed(pen: Pen, scene: Scene, piece: MemberPiece) -> None:
     """A member of the set that is the housing."""
     start, end = place(scene, piece.root), scene.at(piece.ends[0])
     colour = scene.colour(HOUSING)

@@ -20,7 +20,7 @@ class MotionError(ValueError):
 
 
 @family
-class Motion(Component):
+class PrescribedMotion(Component):
     """A motion that is given, whatever torque it takes."""
 
     # whether its speed is an integral, which begins with that of the shaft wherever a run does

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 from clutchwork.base.errors import ClutchworkError, near
 from clutchwork.base.paths import fitting
-from clutchwork.base.shown import shown
+from clutchwork.base.quote import quote
 from clutchwork.base.writing import replaced
 
 if TYPE_CHECKING:
@@ -65,13 +65,13 @@ def _format(path: Path, form: str) -> str:
     found = ENDINGS.get(path.suffix.lower(), "" if path.suffix else form)
     if form and found != form:
         fits = " or ".join(ending for ending, one in ENDINGS.items() if one == form)
-        raise EndingError(f"{shown(str(path))} ends in {shown(path.suffix)}, and to_{form} writes {fits}: rename it")
+        raise EndingError(f"{quote(str(path))} ends in {quote(path.suffix)}, and to_{form} writes {fits}: rename it")
     if not found:
         if not path.suffix:
-            raise EndingError(f"{shown(str(path))} has no ending; give one of {', '.join(ENDINGS)}, such as 'run.csv'")
+            raise EndingError(f"{quote(str(path))} has no ending; give one of {', '.join(ENDINGS)}, such as 'run.csv'")
         known = ", ".join(ENDINGS)
         raise EndingError(
-            f"{shown(str(path))} ends in {shown(path.suffix)}{near(path.suffix, ENDINGS, f'formats are {known}')}"
+            f"{quote(str(path))} ends in {quote(path.suffix)}{near(path.suffix, ENDINGS, f'formats are {known}')}"
         )
     return found
 

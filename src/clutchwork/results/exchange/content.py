@@ -14,8 +14,8 @@ from clutchwork.base.classes import dataclass
 from clutchwork.declare.options import OPTIONS
 from clutchwork.model.settings import plain_settings
 from clutchwork.results.events import UNITS, Event, Events
-from clutchwork.results.raster import at_raster
 from clutchwork.results.selection import chosen
+from clutchwork.results.time_grid import at_raster
 from clutchwork.results.units import Converter, converter
 
 if TYPE_CHECKING:
@@ -25,7 +25,7 @@ Array = NDArray[Any]
 
 
 @dataclass(frozen=True)
-class Signal:
+class ExportedSignal:
     """One signal over all instants."""
 
     name: str
@@ -52,9 +52,9 @@ class Content:
     made: Converter
 
     @property
-    def instants(self) -> Signal:
+    def instants(self) -> ExportedSignal:
         """The time in the unit that is asked for."""
-        return Signal("time", self.made.unit("time"), self.made.put(self.time, "time"))
+        return ExportedSignal("time", self.made.unit("time"), self.made.put(self.time, "time"))
 
     @property
     def time(self) -> NDArray[np.float64]:
@@ -66,17 +66,17 @@ class Content:
         """All events of the run."""
         return self.run.events
 
-    def signals(self) -> Iterator[Signal]:
+    def signals(self) -> Iterator[ExportedSignal]:
         """One after another; each is evaluated when it is asked for."""
         for name in self.names:
-            yield Signal(name, self.made.unit(name), np.ascontiguousarray(self.made.values(self.run, name)))
+            yield ExportedSignal(name, self.made.unit(name), np.ascontiguousarray(self.made.values(self.run, name)))
 
-    def event_columns(self) -> Iterator[Signal]:
+    def event_columns(self) -> Iterator[ExportedSignal]:
         """Every field of every event."""
         for item in fields(Event):
             kind = str if item.name in ("element", "before", "after", "cause") else float
             values = np.array([getattr(event, item.name) for event in self.events], dtype=kind)
-            yield Signal(item.name, UNITS.get(item.name, ""), values)
+            yield ExportedSignal(item.name, UNITS.get(item.name, ""), values)
 
     def about(self) -> dict[str, Any]:
         """Where the signals come from, as plain data."""
@@ -121,7 +121,7 @@ def content(
     times: Any = None,
     units: Mapping[str, str] | None = None,
 ) -> Content:
-    """The signals that are meant, at the instants that are meant, in the units that are meant."""
+    """Selects signals, resamples, converts units."""
     known = run.channels
     # a wrong name is reported before the run is repeated
     picked, made = chosen(names, known, known.fault), converter(run, units)

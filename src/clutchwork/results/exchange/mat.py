@@ -10,7 +10,7 @@ import numpy as np
 
 from clutchwork.base.errors import ClutchworkError
 from clutchwork.base.extras import need
-from clutchwork.results.exchange.content import Content, Signal
+from clutchwork.results.exchange.content import Content, ExportedSignal
 from clutchwork.results.exchange.safe_names import matlab
 
 # fields beside those of the signals
@@ -42,10 +42,10 @@ def write(content: Content, path: Path) -> None:
         scipy.savemat(file, {"run": data}, long_field_names=True, oned_as="column", do_compression=True)
 
 
-def _values(signal: Signal) -> Any:
+def _values(signal: ExportedSignal) -> Any:
     """Numbers as doubles, which is what MATLAB computes with; words as rows of characters of one length."""
     return signal.values if signal.is_text else signal.values.astype(float)
 
 
-def _cells(column: Signal) -> Any:
+def _cells(column: ExportedSignal) -> Any:
     return np.array(column.values, dtype=object).reshape(-1, 1) if column.is_text else column.values

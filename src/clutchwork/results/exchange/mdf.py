@@ -9,7 +9,7 @@ import numpy as np
 
 from clutchwork.base.errors import UseError
 from clutchwork.base.extras import need
-from clutchwork.results.exchange.content import Content, Signal
+from clutchwork.results.exchange.content import Content, ExportedSignal
 
 NEEDED = ("asammdf", "exchange", "an MDF file")
 VERSION = "4.10"
@@ -37,7 +37,7 @@ def write(content: Content, path: Path) -> None:
             file.save(stream, compression=DEFLATE)
 
 
-def _channel(asammdf: Any, signal: Signal, times: Any) -> Any:
+def _channel(asammdf: Any, signal: ExportedSignal, times: Any) -> Any:
     """A channel; words are numbers with a conversion to text."""
     if not signal.is_text:
         return asammdf.Signal(signal.values, times, unit=signal.unit, name=signal.name)

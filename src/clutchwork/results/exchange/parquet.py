@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import Any
 
 from clutchwork.base.extras import need
-from clutchwork.results.exchange.content import Content, Signal
+from clutchwork.results.exchange.content import Content, ExportedSignal
 
 
 def write(content: Content, path: Path) -> None:
@@ -29,7 +29,7 @@ def write(content: Content, path: Path) -> None:
     need("pyarrow.parquet", "exchange").write_table(table, str(path))
 
 
-def _array(pyarrow: Any, column: Signal) -> Any:
+def _array(pyarrow: Any, column: ExportedSignal) -> Any:
     if not column.is_text:
         return pyarrow.array(column.values)
     codes, words = column.coded()

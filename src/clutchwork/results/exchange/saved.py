@@ -14,7 +14,7 @@ from clutchwork.assembly.system import PARTS
 from clutchwork.assembly.wiring import wiring
 from clutchwork.base import archive
 from clutchwork.base.errors import ClutchworkError, ModelError, ModelWarning
-from clutchwork.base.text import counted
+from clutchwork.base.plural import counted
 from clutchwork.declare.options import OPTIONS
 from clutchwork.model.settings import plain_settings
 from clutchwork.results.channels import Channels

@@ -10,7 +10,7 @@ from typing import Any
 from clutchwork.base import html
 from clutchwork.base.classes import dataclass
 from clutchwork.base.errors import advised
-from clutchwork.base.shown import printable
+from clutchwork.base.quote import printable
 from clutchwork.declare.calls import explained_methods
 
 

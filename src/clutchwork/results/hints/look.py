@@ -12,7 +12,7 @@ from clutchwork.assembly.wiring import HOUSING, Branch
 from clutchwork.base.classes import dataclass
 from clutchwork.declare.schema import specs
 from clutchwork.results.channels import LOCKED
-from clutchwork.results.hints.motion import Motion
+from clutchwork.results.hints.motion import SlipAccelerations
 
 if TYPE_CHECKING:
     from clutchwork.assembly.system import System
@@ -28,7 +28,7 @@ MOST_PLACES = 400
 OPEN = 2
 
 
-class Span(NamedTuple):
+class RowSpan(NamedTuple):
     """Rows from `first` to `last`, both of them part of it."""
 
     first: int
@@ -83,9 +83,9 @@ class Look:
         return self.end - self.begin
 
     @cached_property
-    def motion(self) -> Motion:
+    def motion(self) -> SlipAccelerations:
         """What moves when contacts are locked."""
-        return Motion(self.system)
+        return SlipAccelerations(self.system)
 
     @property
     def contacts(self) -> tuple[Branch, ...]:
@@ -136,7 +136,7 @@ class Look:
         steps = 0.5 * (power[1:] + power[:-1]) * np.diff(self.time)[:, None]
         return np.concatenate([np.zeros((1, power.shape[1])), np.cumsum(steps, axis=0)])
 
-    def holding(self, contact: int, span: Span) -> float:
+    def holding(self, contact: int, span: RowSpan) -> float:
         """Mean torque over a span, against the slip, that would keep the slip of a contact as it is; inf: none can.
 
         It is the torque that the contact has, and what its slip acceleration takes beside it.
@@ -153,7 +153,7 @@ class Look:
         """Contacts that are locked at a row."""
         return tuple(np.flatnonzero(self.locked[row]).tolist())
 
-    def mean(self, span: Span, values: Array) -> float:
+    def mean(self, span: RowSpan, values: Array) -> float:
         """Mean over the time of a span of values at its rows."""
         return _mean(self.time[span.first : span.last + 1], values)
 
@@ -178,10 +178,10 @@ class Look:
         pressing = [item.name for item, spec in specs(type(part), "signal", "alternative") if spec.presses or spec.gain]
         return next((f"{part.name}.{name}" for name in pressing if getattr(part, name) is not None), "")
 
-    def spans(self, chosen: Array) -> list[Span]:
+    def spans(self, chosen: Array) -> list[RowSpan]:
         """Stretches of consecutive rows that are chosen and last some time."""
         edges = np.flatnonzero(np.diff(np.concatenate([[False], chosen, [False]]).astype(int)))
-        found = [Span(int(first), int(stop) - 1) for first, stop in zip(edges[::2], edges[1::2], strict=True)]
+        found = [RowSpan(int(first), int(stop) - 1) for first, stop in zip(edges[::2], edges[1::2], strict=True)]
         return [span for span in found if self.time[span.last] > self.time[span.first]]
 
 

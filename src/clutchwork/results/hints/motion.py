@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 Array = NDArray[Any]
 
 
-class Motion:
+class SlipAccelerations:
     """Answers for one System; each is found once."""
 
     def __init__(self, system: System) -> None:

@@ -8,7 +8,7 @@ from importlib import import_module
 from pkgutil import iter_modules
 from typing import TYPE_CHECKING, NamedTuple, TypeAlias
 
-from clutchwork.base.kept import kept
+from clutchwork.base.memoize import memoize
 from clutchwork.results.hints.hint import Hint, Hints
 
 if TYPE_CHECKING:
@@ -65,7 +65,7 @@ def rules() -> tuple[Rule, ...]:
     return tuple(sorted(_RULES.values(), key=lambda rule: (rule.of_model is None, rule.name)))
 
 
-@kept
+@memoize
 def of_model(system: System) -> Hints:
     """The hints about a model that need no run."""
     return Hints(hint for rule in rules() if rule.of_model for hint in rule.of_model(system))

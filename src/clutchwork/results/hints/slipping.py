@@ -12,7 +12,7 @@ from clutchwork.results.ratios import ROUND_OFF
 
 if TYPE_CHECKING:
     from clutchwork.assembly.wiring import Branch
-    from clutchwork.results.hints.look import Look, Span
+    from clutchwork.results.hints.look import Look, RowSpan
 
 # share of its largest load from which a contact is full: pressures from a lag approach theirs
 FULL = 0.98
@@ -25,7 +25,7 @@ class FullSlip(NamedTuple):
 
     contact: int
     branch: Branch
-    span: Span
+    span: RowSpan
     begin: float  # s
     end: float  # s
     load: float  # largest, in the unit of its signal

@@ -9,8 +9,8 @@ from typing import TYPE_CHECKING, Any
 from clutchwork.base.classes import dataclass
 from clutchwork.base.errors import UnknownName, UseError, near
 from clutchwork.base.paths import path_fault
-from clutchwork.base.shown import listed, shown
-from clutchwork.declare.speech import where_signals
+from clutchwork.base.quote import listed, quote
+from clutchwork.declare.wording import where_signals
 from clutchwork.results.plot.panels import busy, driven
 from clutchwork.results.selection import meant
 
@@ -24,7 +24,7 @@ OTHERS = (".jpg", ".jpeg", ".gif", ".tif", ".tiff", ".bmp", ".eps", ".ps", ".web
 
 
 @dataclass(frozen=True, eq=False)
-class Chosen:
+class PlotArguments:
     """What a call says of its picture, as the user gave it."""
 
     signals: tuple[Any, ...] = ()
@@ -37,14 +37,14 @@ class Chosen:
 
 
 @dataclass(frozen=True)
-class Asked:
+class PanelRequest:
     """What a call asks for: names and wildcards by panel, each with whether it is a panel of its own; a path."""
 
     groups: tuple[tuple[bool, tuple[str, ...]], ...]
     path: Path | None
 
 
-def asked(call: str, given: Sequence[Any], path: Any, endings: Collection[str], known: Collection[str]) -> Asked:
+def asked(call: str, given: Sequence[Any], path: Any, endings: Collection[str], known: Collection[str]) -> PanelRequest:
     """Keep names of signals apart from the path of the picture.
 
     A string is the path where it ends as a picture does and no signal has that name; a `Path` always is. A list or
@@ -61,13 +61,13 @@ def asked(call: str, given: Sequence[Any], path: Any, endings: Collection[str], 
             groups.append((True, tuple(one)))
         else:
             remedy = "give the name of a signal, a wildcard such as 'c1.*', or a list of names for one panel"
-            wrong.append(f"{shown(one)} is not a signal; {remedy}")
+            wrong.append(f"{quote(one)} is not a signal; {remedy}")
     if len(paths) > 1:
         wrong.append(f"there are {len(paths)} paths: {listed(paths)}; give one")
     wrong += [fault for one in paths[:1] if (fault := _path_fault(one, endings))]
     if wrong:
         raise UseError(call, wrong)
-    return Asked(tuple(groups), Path(paths[0]) if paths else None)
+    return PanelRequest(tuple(groups), Path(paths[0]) if paths else None)
 
 
 def _is_path(word: str, known: Collection[str]) -> bool:
@@ -84,10 +84,10 @@ def _path_fault(path: Any, endings: Collection[str]) -> str:
     fault = f"has the ending {ending!r}" if ending else "has no ending"
     remedy = f"write it to a path that ends in {known}"
     other = "; run.explore(...) writes pages" if ending == ".html" else ""
-    return f"path {shown(str(path))} {fault}; {remedy}{other}"
+    return f"path {quote(str(path))} {fault}; {remedy}{other}"
 
 
-def panels(runs: Mapping[str, Recorded], asked: Asked, unit: Any, call: str) -> list[tuple[bool, list[str]]]:
+def panels(runs: Mapping[str, Recorded], asked: PanelRequest, unit: Any, call: str) -> list[tuple[bool, list[str]]]:
     """Names of the signals of each panel, wildcards resolved; those that are loose are still together.
 
     A name that one of the runs lacks is an error, a wildcard takes what is there in any of them.
@@ -118,9 +118,9 @@ def _matching(runs: Mapping[str, Recorded], word: str) -> tuple[list[str], list[
         known = list(dict.fromkeys(name for run in runs.values() for name in run.channels))
         matching = meant(word, known)
         plain = word.replace("*", "").replace("?", "")
-        fault = f"no signal matches {shown(word)}{near(plain, known, where_signals())}"
+        fault = f"no signal matches {quote(word)}{near(plain, known, where_signals())}"
         return (matching, []) if matching else ([], [fault])
-    return [], [f"run {shown(label)}: {fault}" if label else fault for label, fault in faults.items()]
+    return [], [f"run {quote(label)}: {fault}" if label else fault for label, fault in faults.items()]
 
 
 def _fault(run: Recorded, word: str) -> str:
@@ -130,7 +130,7 @@ def _fault(run: Recorded, word: str) -> str:
     except UnknownName as error:
         for pattern in (f"{word}.*", f"*.{word}"):
             if meant(pattern, run.channels):
-                return f"no signal {shown(word)}; did you mean {pattern!r}? {where_signals()}"
+                return f"no signal {quote(word)}; did you mean {pattern!r}? {where_signals()}"
         return str(error)
     return ""
 
@@ -154,7 +154,7 @@ def _units(runs: Mapping[str, Recorded], unit: Any, call: str) -> set[str]:
         dict.fromkeys(channel.unit for run in runs.values() for channel in run.channels.values() if channel.unit)
     )
     wrong = [
-        f"unit {shown(one)}: no signal has it{near(one, known, f'units are {listed(known)}')}"
+        f"unit {quote(one)}: no signal has it{near(one, known, f'units are {listed(known)}')}"
         for one in given
         if one not in known
     ]

@@ -7,10 +7,10 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from clutchwork.base.errors import UseError, near
-from clutchwork.base.shown import shown
+from clutchwork.base.quote import quote
 from clutchwork.declare.calls import explained
 from clutchwork.results.plot import named
-from clutchwork.results.plot.chosen import PICTURES, Asked, asked, panels, usual
+from clutchwork.results.plot.chosen import PICTURES, PanelRequest, asked, panels, usual
 from clutchwork.results.plot.curves import panels_of, units_of
 from clutchwork.results.plot.measured import samples, with_samples
 from clutchwork.results.plot.view import viewed
@@ -49,12 +49,12 @@ def compare(
     """
     runs, rest = _runs(runs_and_signals, labels)
     if colour not in COLOURS:
-        raise UseError("compare", [f"colour is {shown(colour)}: give 'run' or 'signal'{near(colour, COLOURS)}"])
+        raise UseError("compare", [f"colour is {quote(colour)}: give 'run' or 'signal'{near(colour, COLOURS)}"])
     known = {name for run in runs.values() for name in run.channels}
     wanted = asked("compare", rest, path, PICTURES, known)
     extra, shown_in = samples(runs, measured, "compare"), units_of(runs, units, "compare")
     if not wanted.groups and unit is None:
-        wanted = Asked(_common(runs), wanted.path)
+        wanted = PanelRequest(_common(runs), wanted.path)
     view = viewed(runs, zoom, events, "compare")
     groups = with_samples(panels(runs, wanted, unit, "compare"), extra)
     return named.draw(view, panels_of(view.runs, groups, extra, "compare", shown_in), wanted.path, colour)
@@ -70,8 +70,8 @@ def _runs(given: Sequence[Any], labels: Any) -> tuple[dict[str, Recorded], list[
         count = next((i for i, one in enumerate(given) if not _is_run(one)), len(given))
         listed, rest = list(given[:count]), list(given[count:])
         runs = dict(zip(_labels(listed, labels), listed, strict=True))
-    wrong = [f"{shown(label)} is {shown(run)}, which is not a run" for label, run in runs.items() if not _is_run(run)]
-    wrong += [f"{shown(one)} is not among the runs; give all runs before the signals" for one in rest if _is_run(one)]
+    wrong = [f"{quote(label)} is {quote(run)}, which is not a run" for label, run in runs.items() if not _is_run(run)]
+    wrong += [f"{quote(one)} is not among the runs; give all runs before the signals" for one in rest if _is_run(one)]
     if not runs:
         wrong.append("there is no run; give what simulate returns, such as {'soft': run1, 'hard': run2}")
     if wrong:
@@ -90,7 +90,7 @@ def _labels(runs: Sequence[Any], labels: Any) -> list[str]:
         return names if len(set(names)) == len(names) else [f"run {number}" for number in range(1, len(runs) + 1)]
     given = [] if isinstance(labels, str) else [str(label) for label in labels]
     if len(given) != len(runs) or len(set(given)) != len(given):
-        raise UseError("compare", [f"labels is {shown(labels)}: give {len(runs)} different strings, one for each run"])
+        raise UseError("compare", [f"labels is {quote(labels)}: give {len(runs)} different strings, one for each run"])
     return given
 
 

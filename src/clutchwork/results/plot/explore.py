@@ -10,9 +10,9 @@ import numpy as np
 
 from clutchwork.base.errors import UseError
 from clutchwork.base.extras import need
-from clutchwork.base.shown import shown
+from clutchwork.base.quote import quote
 from clutchwork.base.writing import replaced
-from clutchwork.results.plot.chosen import PAGES, Asked, Chosen, asked, panels, usual_groups
+from clutchwork.results.plot.chosen import PAGES, PanelRequest, PlotArguments, asked, panels, usual_groups
 from clutchwork.results.plot.curves import WORDS, Array, Curve, Panel, Side, panels_of, thinned, units_of
 from clutchwork.results.plot.measured import samples, with_samples
 from clutchwork.results.plot.named import curve_looks
@@ -31,14 +31,14 @@ MARKS = {"locked": "square", "open": "circle-open", "forward": "triangle-right",
 FEWEST = 100
 
 
-def explore(run: Recorded, chosen: Chosen, points: int | None) -> Any:
+def explore(run: Recorded, chosen: PlotArguments, points: int | None) -> Any:
     """A figure of plotly with the same panels as `plot`; written as a page where there is a path."""
     runs, call = {"": run}, "explore"
     _check_points(points)
     wanted = asked(call, chosen.signals, chosen.path, PAGES, run.channels)
     extra, shown_in = samples(runs, chosen.measured, call), units_of(runs, chosen.units, call)
     if not wanted.groups and chosen.unit is None and not extra:
-        wanted = Asked(usual_groups(run), wanted.path)
+        wanted = PanelRequest(usual_groups(run), wanted.path)
     groups = with_samples(panels(runs, wanted, chosen.unit, call), extra)
     view = viewed(runs, chosen.zoom, chosen.events, call)
     figure = _figure(view, panels_of(view.runs, groups, extra, call, shown_in), points)
@@ -56,7 +56,7 @@ def _check_points(points: object) -> None:
     if points is None or (isinstance(points, int) and not isinstance(points, bool) and points >= FEWEST):
         return
     remedy = f"give a whole number from {FEWEST} on, or None for all of them"
-    raise UseError("explore", [f"points is {shown(points)}: {remedy}"])
+    raise UseError("explore", [f"points is {quote(points)}: {remedy}"])
 
 
 def _figure(view: View, panels: Sequence[Panel], points: int | None) -> Any:

@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from clutchwork.base.errors import FileError, UseError
-from clutchwork.base.shown import shown
+from clutchwork.base.quote import quote
 from clutchwork.declare.node import Signal
 from clutchwork.results.plot.curves import Curve
 
@@ -26,16 +26,16 @@ def samples(runs: Mapping[str, Recorded], given: Any, call: str) -> list[Curve]:
     if given is None:
         return []
     if not isinstance(given, Mapping):
-        raise UseError(call, [f"measured is {shown(given)}: give samples by signal, {{'c1.torque': (time, values)}}"])
+        raise UseError(call, [f"measured is {quote(given)}: give samples by signal, {{'c1.torque': (time, values)}}"])
     made, wrong = list[Curve](), list[str]()
     for name, data in given.items():
         # an unknown name raises with near ones
         run = next((run for run in runs.values() if name in run), next(iter(runs.values())))
         unit = run.channels[name].unit
-        wrong += [f"measured {shown(name)}: {fault}" for fault in _unit_faults(data, unit)]
+        wrong += [f"measured {quote(name)}: {fault}" for fault in _unit_faults(data, unit)]
         found = _pair(data)
         if isinstance(found, str):
-            wrong.append(f"measured {shown(name)}: {found}")
+            wrong.append(f"measured {quote(name)}: {found}")
         else:
             made.append(Curve(name, f"{name}, measured", unit, *found, measured=True))
     if wrong:
@@ -78,7 +78,7 @@ def _pair(data: Any) -> tuple[NDArray[np.float64], NDArray[np.float64]] | str:
     except FileError as error:
         return str(error)
     except (TypeError, ValueError):
-        return f"is {shown(data)}; {REMEDY}"
+        return f"is {quote(data)}; {REMEDY}"
     if times.ndim != 1 or times.shape != values.shape or not times.size:
         return f"has {times.size} times for {values.size} values; {REMEDY}"
     return times, values

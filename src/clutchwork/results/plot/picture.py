@@ -24,7 +24,7 @@ if TYPE_CHECKING:
 
 
 @dataclass(frozen=True)
-class Panel:
+class AxesPanel:
     """One axes of a picture."""
 
     title: str
@@ -54,36 +54,36 @@ def last_lockup(run: Recorded) -> Event | None:
     return locking[-1] if locking else None
 
 
-def _panels(run: Recorded, lockup: Event | None) -> list[Panel]:
-    chosen: list[Panel] = []
+def _panels(run: Recorded, lockup: Event | None) -> list[AxesPanel]:
+    chosen: list[AxesPanel] = []
     for domain, members in ((Domain.ROTATION, "shafts"), (Domain.TRANSLATION, "masses")):
         count = sum(node.domain is domain for node in run.wiring.nodes)
         if count:
             words = f"speeds of {_all(count)} {members}"
             chosen.append(
-                Panel(
+                AxesPanel(
                     words, _height(min(count, panels.MOST_CURVES)), True, partial(panels.speeds, run=run, domain=domain)
                 )
             )
     if lockup is not None:
-        chosen.append(Panel("zoom at lock-up", 42.0, False, partial(panels.zoom, run=run, event=lockup)))
+        chosen.append(AxesPanel("zoom at lock-up", 42.0, False, partial(panels.zoom, run=run, event=lockup)))
     for group in panels.driven(run):
         words = f"{panels.pressing(run, group)}s of {_contacts(run, len(group))}"
         height = _height(len(group), 28.0)
-        chosen.append(Panel(words, height, True, partial(panels.inputs, run=run, names=group)))
+        chosen.append(AxesPanel(words, height, True, partial(panels.inputs, run=run, names=group)))
     for contacts in panels.loaded(run):
         words = f"{panels.carrying(run, contacts)}s of {_contacts(run, len(contacts))}"
         # its legend has a title
         height = _height(len(contacts), 46.0, 5.0)
-        chosen.append(Panel(words, height, True, partial(panels.torques, run=run, names=contacts)))
+        chosen.append(AxesPanel(words, height, True, partial(panels.torques, run=run, names=contacts)))
     if panels.busy(run):
         rows = len(panels.busy(run))
         words = f"states of {_contacts(run, rows)}"
-        chosen.append(Panel(words, 5.0 + 4.0 * rows, True, partial(panels.locks, run=run)))
+        chosen.append(AxesPanel(words, 5.0 + 4.0 * rows, True, partial(panels.locks, run=run)))
     if run.wiring.thermal:
         count = len(run.wiring.thermal)
         words, height = f"temperatures of {_all(count)} thermal nodes", _height(min(count, panels.MOST_CURVES), 36.0)
-        chosen.append(Panel(words, height, True, partial(panels.temperatures, run=run)))
+        chosen.append(AxesPanel(words, height, True, partial(panels.temperatures, run=run)))
     return chosen
 
 
@@ -103,7 +103,7 @@ def _contacts(run: Recorded, drawn: int) -> str:
     return "clutches and brakes" if count <= panels.MOST_CURVES else f"{drawn} of {count} clutches and brakes"
 
 
-def _draw(figure: Figure, view: View, lockup: Event | None, chosen: list[Panel]) -> None:
+def _draw(figure: Figure, view: View, lockup: Event | None, chosen: list[AxesPanel]) -> None:
     (run,) = view.runs.values()
     grid = figure.add_gridspec(len(chosen), 1, height_ratios=[panel.height for panel in chosen])
     instants = list(dict.fromkeys(event.time for _, event in view.marks))
@@ -127,7 +127,7 @@ def _draw(figure: Figure, view: View, lockup: Event | None, chosen: list[Panel])
         _frame(figure, run, lockup, chosen)
 
 
-def _frame(figure: Figure, run: Recorded, lockup: Event, chosen: list[Panel]) -> None:
+def _frame(figure: Figure, run: Recorded, lockup: Event, chosen: list[AxesPanel]) -> None:
     """Show in the panel of all speeds what the zoom is cut from."""
     zoomed = next(row for row, panel in enumerate(chosen) if not panel.whole)
     translates = panels.domain_of(run, lockup) is Domain.TRANSLATION

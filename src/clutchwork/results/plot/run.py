@@ -6,11 +6,11 @@ from typing import TYPE_CHECKING, Any
 
 from clutchwork.base import html
 from clutchwork.base.errors import UseError
-from clutchwork.base.shown import shown
-from clutchwork.base.text import counted
+from clutchwork.base.plural import counted
+from clutchwork.base.quote import quote
 from clutchwork.results.events import Event
 from clutchwork.results.plot import named
-from clutchwork.results.plot.chosen import PICTURES, Asked, Chosen, asked, panels, usual_groups
+from clutchwork.results.plot.chosen import PICTURES, PanelRequest, PlotArguments, asked, panels, usual_groups
 from clutchwork.results.plot.curves import panels_of, units_of
 from clutchwork.results.plot.measured import samples, with_samples
 from clutchwork.results.plot.panels import busy
@@ -22,7 +22,7 @@ if TYPE_CHECKING:
     from clutchwork.results.recorded import Recorded
 
 
-def plot(run: Recorded, chosen: Chosen, lockup: Event | None = None) -> Picture:
+def plot(run: Recorded, chosen: PlotArguments, lockup: Event | None = None) -> Picture:
     """Draw a run: what is named, or the usual panels."""
     runs = {"": run}
     wanted = asked("plot", chosen.signals, chosen.path, PICTURES, run.channels)
@@ -30,7 +30,7 @@ def plot(run: Recorded, chosen: Chosen, lockup: Event | None = None) -> Picture:
     if shown_in.units and not wanted.groups and chosen.unit is None:
         # panels of their own, for members of one may have several units
         states = tuple((False, (f"{contact}.state",)) for contact in busy(run))
-        wanted = Asked((*usual_groups(run), *states), wanted.path)
+        wanted = PanelRequest((*usual_groups(run), *states), wanted.path)
     groups = with_samples(panels(runs, wanted, chosen.unit, "plot"), extra)
     _check_lockup(lockup, bool(groups))
     view = viewed(runs, chosen.zoom, chosen.events, "plot")
@@ -44,7 +44,7 @@ def _check_lockup(lockup: object, is_named: bool) -> None:
     if lockup is None:
         return
     if not isinstance(lockup, Event):
-        raise UseError("plot", [f"lockup is {shown(lockup)}: it must be an event, such as run.events.of('c1')[-1]"])
+        raise UseError("plot", [f"lockup is {quote(lockup)}: it must be an event, such as run.events.of('c1')[-1]"])
     if is_named:
         remedy = "give zoom=(t0, t1), or leave out the names"
         raise UseError("plot", [f"lockup is of the picture without names of signals; {remedy}"])
@@ -60,7 +60,7 @@ def parts(run: Any) -> tuple[Picture | None, list[str]]:
     """The picture and the tables of a run in a notebook; no picture without matplotlib."""
     tables = [_summary(run)]
     try:
-        return (plot(run, Chosen()) if len(run) else None), tables
+        return (plot(run, PlotArguments()) if len(run) else None), tables
     except ImportError:
         return None, tables
 

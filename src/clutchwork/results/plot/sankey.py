@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 from clutchwork.results.plot.figure import figure_of, written
 from clutchwork.results.plot.sankey_graph import Graph, graph
-from clutchwork.results.plot.sankey_places import ARROW, BAR, Path, Place, Places, places
+from clutchwork.results.plot.sankey_places import ARROW, BAR, BoxPlace, Path, SankeyLayout, places
 from clutchwork.results.plot.style import COLOURS, MILLIMETRE
 
 if TYPE_CHECKING:
@@ -66,7 +66,7 @@ def draw(table: LossTable, path: FilePath | None = None) -> Picture:
         return written(figure, path)
 
 
-def _legend(axes: Any, where: Places, table: LossTable, made: Graph) -> None:
+def _legend(axes: Any, where: SankeyLayout, table: LossTable, made: Graph) -> None:
     """What colours mean, what all heat is, what is not shown."""
     parts = [("mechanical", WORK), ("heat", HEAT), ("stored: kinetic, elastic", STORED)]
     left = 4.0
@@ -120,7 +120,7 @@ def _mark(axes: Any, x: float, y: float, path: Path) -> None:
     axes.fill([back, tip, back], [y + size, y, y - size], color="white" if path.thick > 2.5 else INK, linewidth=0)
 
 
-def _box(axes: Any, made: Graph, where: Places, name: str, unit: str) -> None:
+def _box(axes: Any, made: Graph, where: SankeyLayout, name: str, unit: str) -> None:
     """A box with its name and what goes through it, its heat and what it stores."""
     box, place = made.boxes[name], where.boxes[name]
     colour = "#9A9A9A" if box.is_shaft else INK
@@ -145,7 +145,7 @@ def _words(colour: str) -> dict[str, Any]:
     return {"fontsize": 6.3, "ha": "center", "color": colour, "zorder": 6, "bbox": CLEAR}
 
 
-def _name(axes: Any, made: Graph, where: Places, name: str, unit: str) -> None:
+def _name(axes: Any, made: Graph, where: SankeyLayout, name: str, unit: str) -> None:
     """The name above the bar, and for what has another end outside of the driveline how much goes there."""
     box, place = made.boxes[name], where.boxes[name]
     lines = [name]
@@ -170,7 +170,7 @@ def _name(axes: Any, made: Graph, where: Places, name: str, unit: str) -> None:
     )
 
 
-def _bend(axes: Any, place: Place, thick: float, colour: str, *, down: bool, left: bool = False) -> None:
+def _bend(axes: Any, place: BoxPlace, thick: float, colour: str, *, down: bool, left: bool = False) -> None:
     """Energy that turns down or up beside a bar, or comes from above on its left, with the point of an arrow."""
     from matplotlib.patches import PathPatch
     from matplotlib.path import Path as Outline

@@ -21,7 +21,7 @@ SWEEPS = 24
 
 
 @dataclass(frozen=True)
-class Place:
+class BoxPlace:
     """A box: left edge, middle, height; ends of its ribbons are sorted by where they go."""
 
     x: float
@@ -39,13 +39,13 @@ class Path:
 
 
 @dataclass(frozen=True)
-class Places:
+class SankeyLayout:
     """The whole picture."""
 
     wide: float
     high: float
     scale: float  # mm per unit
-    boxes: dict[str, Place]
+    boxes: dict[str, BoxPlace]
     paths: tuple[Path, ...]
 
 
@@ -60,7 +60,7 @@ class Item:
     below: float
 
 
-def places(graph: Graph, wide: float) -> Places:
+def places(graph: Graph, wide: float) -> SankeyLayout:
     """Boxes and ribbons in a width [mm]."""
     sides = _sides(graph)
     largest = max((max(pair) for pair in sides.values()), default=0.0)
@@ -81,9 +81,9 @@ def places(graph: Graph, wide: float) -> Places:
     lefts, wide = _lefts(graph, scale, wide)
     left = {item.name: lefts[item.column] for item in items}
     boxes = {
-        item.name: Place(left[item.name], middle[item.name], item.high) for item in items if item.name in graph.boxes
+        item.name: BoxPlace(left[item.name], middle[item.name], item.high) for item in items if item.name in graph.boxes
     }
-    return Places(wide, high, scale, boxes, tuple(_paths(chains, left, middle, boxes, graph, scale)))
+    return SankeyLayout(wide, high, scale, boxes, tuple(_paths(chains, left, middle, boxes, graph, scale)))
 
 
 def _lefts(graph: Graph, scale: float, wide: float) -> tuple[list[float], float]:
@@ -200,7 +200,7 @@ def _paths(
     chains: list[tuple[Ribbon, list[str]]],
     left: dict[str, float],
     middle: dict[str, float],
-    boxes: dict[str, Place],
+    boxes: dict[str, BoxPlace],
     graph: Graph,
     scale: float,
 ) -> Iterable[Path]:

@@ -11,7 +11,7 @@ import numpy as np
 
 from clutchwork.base.classes import dataclass
 from clutchwork.base.errors import UseError
-from clutchwork.base.shown import shown
+from clutchwork.base.quote import quote
 from clutchwork.declare.quantity import QuantityError, in_si
 from clutchwork.results.events import Event, Events
 
@@ -61,7 +61,7 @@ def viewed(runs: Mapping[str, Recorded], zoom: Any, events: Any, call: str) -> V
 
 
 def _of(label: str) -> str:
-    return f"run {shown(label)}: " if label else ""
+    return f"run {quote(label)}: " if label else ""
 
 
 def _window(zoom: Any, begin: float, end: float, call: str) -> tuple[float, float]:
@@ -70,7 +70,7 @@ def _window(zoom: Any, begin: float, end: float, call: str) -> tuple[float, floa
     except (TypeError, QuantityError):
         ends = ()
     if len(ends) != 2 or not all(isinstance(t, Real) and math.isfinite(t) for t in ends):
-        raise UseError(call, [f"zoom is {shown(zoom)}: give two times in s, such as zoom=({begin:g}, {end:g})"])
+        raise UseError(call, [f"zoom is {quote(zoom)}: give two times in s, such as zoom=({begin:g}, {end:g})"])
     left, right = float(ends[0]), float(ends[1])
     if not begin <= left < right <= end:
         bounds = f"they must rise and lie between {begin:g} and {end:g} s, which the run covers"
@@ -101,7 +101,7 @@ def _wanted(run: Recorded, events: Any, call: str) -> list[Event]:
         chosen = [list(run.events.of(one).changes()) if isinstance(one, str) else [one] for one in given]
         return sorted((event for part in chosen for event in part), key=lambda event: event.time)
     remedy = "give True, False, names of contacts, or events such as run.events.of('c1')"
-    raise UseError(call, [f"events is {shown(events)}: {remedy}"])
+    raise UseError(call, [f"events is {quote(events)}: {remedy}"])
 
 
 def happened(event: Event) -> str:

@@ -12,7 +12,7 @@ from clutchwork.rig.bench import Bench, friction, position
 from clutchwork.rig.experiment import Experiment, Result, experiment
 from clutchwork.rig.looks import head, legend_below, looks, small
 from clutchwork.rig.presets import Preset
-from clutchwork.rig.table import Column, Table
+from clutchwork.rig.table import Table, TableColumn
 from clutchwork.rig.trial import NOT_REACHED, Runs, Trial
 from clutchwork.signals.table import Table as Course
 
@@ -60,7 +60,7 @@ class Breakaway(Experiment):
     def table(self, preset: Preset, trials: Mapping[str, Trial]) -> Table:
         """One line for each rate."""
         force = preset.unit_force
-        heads = (Column("rate", f"{force}/s"), *(Column(label, force) for label in trials))
+        heads = (TableColumn("rate", f"{force}/s"), *(TableColumn(label, force) for label in trials))
         lines = []
         for rate in self.rates:
             peaks = [self.peak(trial[f"{rate:.4g}"], preset) for trial in trials.values()]

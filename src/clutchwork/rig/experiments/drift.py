@@ -13,7 +13,7 @@ from clutchwork.rig.bench import Bench, position
 from clutchwork.rig.experiment import Experiment, Result, experiment
 from clutchwork.rig.looks import head, legend_below, looks, small
 from clutchwork.rig.presets import Preset
-from clutchwork.rig.table import Column
+from clutchwork.rig.table import TableColumn
 from clutchwork.rig.trial import Runs, Trial
 from clutchwork.signals.sine import Sine
 from clutchwork.signals.table import Table as Course
@@ -80,11 +80,11 @@ class Drift(Experiment):
         turns = 2 * pi * ((frequency * (end - self.begin)) % 1.0)
         return held, swinging, Sine(amplitude=-unit * swing, frequency=frequency, start=end, phase=turns)
 
-    def columns(self, preset: Preset) -> tuple[Column, ...]:
+    def columns(self, preset: Preset) -> tuple[TableColumn, ...]:
         """What is measured."""
         unit = preset.unit_length
         names = ("after the push", "creep", "late creep", "after the load")
-        return tuple(Column(name, unit) for name in names)
+        return tuple(TableColumn(name, unit) for name in names)
 
     def measure(self, trial: Trial) -> Sequence[float]:
         """Displacement by the push, over whole periods without the first, over the last of them, and after the load."""

@@ -13,7 +13,7 @@ from clutchwork.rig.bench import Bench, friction, position, speed
 from clutchwork.rig.experiment import Experiment, Result, experiment
 from clutchwork.rig.looks import head, legend_below, looks, small
 from clutchwork.rig.presets import Preset
-from clutchwork.rig.table import Column
+from clutchwork.rig.table import TableColumn
 from clutchwork.rig.trial import Runs, Trial
 from clutchwork.signals.sine import Sine
 
@@ -53,10 +53,10 @@ class Hysteresis(Experiment):
             runs[case] = bench.simulate(d, t_end, times=times)
         return runs
 
-    def columns(self, preset: Preset) -> tuple[Column, ...]:
+    def columns(self, preset: Preset) -> tuple[TableColumn, ...]:
         """What is measured."""
         parts = (("peak", preset.unit_force), ("heat per cycle", "J"), ("cycle to cycle", "1"))
-        return tuple(Column(f"{case} {name}", unit) for case in CASES for name, unit in parts)
+        return tuple(TableColumn(f"{case} {name}", unit) for case in CASES for name, unit in parts)
 
     def measure(self, trial: Trial) -> Sequence[float]:
         """Largest force and heat of the last cycle, and by which share the last two cycles differ."""

@@ -17,7 +17,7 @@ from clutchwork.rig.bench import Bench, speed
 from clutchwork.rig.experiment import Experiment, Result, experiment
 from clutchwork.rig.looks import GREY, GUIDE, head, legend_below, looks, nested, title
 from clutchwork.rig.presets import Preset
-from clutchwork.rig.table import Column, Table
+from clutchwork.rig.table import Table, TableColumn
 from clutchwork.rig.trial import NOT_REACHED, Runs, Trial
 
 if TYPE_CHECKING:
@@ -105,12 +105,12 @@ class Judder(Experiment):
     def table(self, preset: Preset, trials: Mapping[str, Trial]) -> Table:
         """Growth over damping: from theory, then measured with every law."""
         damping = "N m s/rad" if preset.unit_length == "rad" else "N s/m"
-        heads = [Column("damping", damping), Column("over limit"), Column("theory", "1/s")]
+        heads = [TableColumn("damping", damping), TableColumn("over limit"), TableColumn("theory", "1/s")]
         lines = []
         for share in self.shares:
             measured = [self.measured(trial[f"{share:.3g}"], preset) for trial in trials.values()]
             lines.append((share * self.limit(preset), share, self.growth(preset, share), *measured))
-        return Table((*heads, *(Column(label, "1/s") for label in trials)), tuple(lines))
+        return Table((*heads, *(TableColumn(label, "1/s") for label in trials)), tuple(lines))
 
     def measured(self, run: Trajectory, preset: Preset) -> float:
         """Growth of the vibration while it is small [1/s]; NaN where there is none to measure."""

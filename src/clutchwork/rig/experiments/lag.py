@@ -13,7 +13,7 @@ from clutchwork.rig.bench import Bench, friction, speed
 from clutchwork.rig.experiment import Experiment, Result, experiment
 from clutchwork.rig.looks import GREY, head, legend_below, looks, small
 from clutchwork.rig.presets import Preset
-from clutchwork.rig.table import Column
+from clutchwork.rig.table import TableColumn
 from clutchwork.rig.trial import Runs, Trial
 from clutchwork.signals.sine import Sine
 
@@ -58,9 +58,9 @@ class Lag(Experiment):
         times = begin + np.linspace(0.0, 1.0 / hertz, self.samples + 1)
         return bench.simulate(bench.moved(motion, start=self.middle * unit), float(times[-1]), times=times)
 
-    def columns(self, preset: Preset) -> tuple[Column, ...]:
+    def columns(self, preset: Preset) -> tuple[TableColumn, ...]:
         """What is measured."""
-        return tuple(Column(f"gap at {hertz:g} Hz", preset.unit_force) for hertz in (self.slow, self.fast))
+        return tuple(TableColumn(f"gap at {hertz:g} Hz", preset.unit_force) for hertz in (self.slow, self.fast))
 
     def measure(self, trial: Trial) -> Sequence[float]:
         """Friction at the mean speed while the speed rises less that while it falls [N]."""

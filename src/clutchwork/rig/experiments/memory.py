@@ -14,7 +14,7 @@ from clutchwork.rig.bench import Bench, friction, position
 from clutchwork.rig.experiment import Experiment, Result, experiment
 from clutchwork.rig.looks import head, legend_below, looks, small, title
 from clutchwork.rig.presets import Preset
-from clutchwork.rig.table import Column
+from clutchwork.rig.table import TableColumn
 from clutchwork.rig.trial import Runs, Trial
 from clutchwork.signals.table import Table as Course
 
@@ -62,10 +62,10 @@ class Memory(Experiment):
         times = np.linspace(0.0, t_end, len(turns) * self.samples + 1)
         return bench.simulate(bench.moved(Course(corners)), t_end, times=times)
 
-    def columns(self, preset: Preset) -> tuple[Column, ...]:
+    def columns(self, preset: Preset) -> tuple[TableColumn, ...]:
         """What is measured."""
         names = ("minor loop open by", "forgotten by", "creep of the large loop")
-        return tuple(Column(name, preset.unit_force) for name in names)
+        return tuple(TableColumn(name, preset.unit_force) for name in names)
 
     def measure(self, trial: Trial) -> Sequence[float]:
         """Change of force over the minor loop, and what is left of that at the end of the large one [N]."""

@@ -19,7 +19,7 @@ from clutchwork.rig.bench import Bench
 from clutchwork.rig.experiment import Experiment, Result, experiment
 from clutchwork.rig.looks import looks, title
 from clutchwork.rig.presets import Preset
-from clutchwork.rig.table import Column
+from clutchwork.rig.table import TableColumn
 from clutchwork.rig.trial import NOT_REACHED, Runs, Trial
 from clutchwork.signals.table import Table as Course
 
@@ -88,10 +88,10 @@ class Stall(Experiment):
         d.add(ResistingTorque("road", shaft=vehicle, torque=self.road, speed=0.5))
         return d
 
-    def columns(self, preset: Preset) -> tuple[Column, ...]:
+    def columns(self, preset: Preset) -> tuple[TableColumn, ...]:
         """What is measured."""
         units = {"steps": "1", "reached": "s", "slip gone at": "s", "heat": "J", "last torque": preset.unit_force}
-        return tuple(Column(name, unit) for name, unit in units.items())
+        return tuple(TableColumn(name, unit) for name, unit in units.items())
 
     def measure(self, trial: Trial) -> Sequence[float]:
         """Steps, time that was reached, when the slip fell below 0.1 % of its start, heat and torque at the end."""

@@ -15,7 +15,7 @@ from clutchwork.rig.bench import Bench, friction
 from clutchwork.rig.experiment import Experiment, Result, experiment
 from clutchwork.rig.looks import GREY, legend_below, nested
 from clutchwork.rig.presets import Preset
-from clutchwork.rig.table import Column, Table
+from clutchwork.rig.table import Table, TableColumn
 from clutchwork.rig.trial import NOT_REACHED, Runs, Trial
 from clutchwork.signals.table import Table as Course
 
@@ -72,9 +72,9 @@ class Steady(Experiment):
         forces = {label: _reached(trial["steady"], len(speeds)) for label, trial in trials.items()}
         force = preset.unit_force
         heads = (
-            Column("speed", preset.unit_speed),
-            Column("curve", force),
-            *(Column(label, force) for label in forces),
+            TableColumn("speed", preset.unit_speed),
+            TableColumn("curve", force),
+            *(TableColumn(label, force) for label in forces),
         )
         lines = [(v, preset.curve(v), *(column[i] for column in forces.values())) for i, v in enumerate(speeds)]
         return Table(heads, tuple(lines))

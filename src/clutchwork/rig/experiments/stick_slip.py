@@ -16,7 +16,7 @@ from clutchwork.rig.bench import Bench
 from clutchwork.rig.experiment import Experiment, Result, experiment
 from clutchwork.rig.looks import head, legend_below, looks, small
 from clutchwork.rig.presets import Preset
-from clutchwork.rig.table import Column
+from clutchwork.rig.table import TableColumn
 from clutchwork.rig.trial import NOT_REACHED, Runs, Trial
 
 if TYPE_CHECKING:
@@ -67,10 +67,10 @@ class StickSlip(Experiment):
         drop = 2.0 * (1.0 - preset.kinetic / preset.static)
         return float(loading * (1.0 + self.periods * drop))
 
-    def columns(self, preset: Preset) -> tuple[Column, ...]:
+    def columns(self, preset: Preset) -> tuple[TableColumn, ...]:
         """What is measured."""
         units = {"period": "s", "largest": preset.unit_force, "smallest": preset.unit_force, "sticks": "1"}
-        return tuple(Column(name, unit) for name, unit in units.items())
+        return tuple(TableColumn(name, unit) for name, unit in units.items())
 
     def measure(self, trial: Trial) -> Sequence[float]:
         """Period, force of the spring at its ends, and the share of time in which the mass sticks; second half."""

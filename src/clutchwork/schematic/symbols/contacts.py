@@ -4,24 +4,24 @@ from __future__ import annotations
 
 from math import pi
 
-from clutchwork.schematic.look import HALO, LOCKED, PAPER, SLIPPING, STATE, THIN, Look
-from clutchwork.schematic.pen import Pen
+from clutchwork.schematic.look import HALO, LOCKED, PAPER, SLIPPING, STATE, THIN, MarkStyle
+from clutchwork.schematic.pen import SymbolPen
 from clutchwork.schematic.symbols.symbol import Drawn, Symbol, ends
 
 
-def ink(shown: Drawn, width: float = 1.0) -> Look:
+def ink(shown: Drawn, width: float = 1.0) -> MarkStyle:
     """Lines in the colour of the state."""
     return STATE[shown.state]._replace(width=width)
 
 
-def halo(pen: Pen, shown: Drawn, width: float = 11.5, height: float = 12.0) -> None:
+def halo(pen: SymbolPen, shown: Drawn, width: float = 11.5, height: float = 12.0) -> None:
     """The ground that shows the state from afar."""
     if shown.state in HALO:
         colour = HALO[shown.state]
-        pen.box(-width, -height, width, height, look=Look(colour, 0.4, colour))
+        pen.box(-width, -height, width, height, look=MarkStyle(colour, 0.4, colour))
 
 
-def lining(pen: Pen, shown: Drawn, left: float, low: float, right: float, high: float) -> None:
+def lining(pen: SymbolPen, shown: Drawn, left: float, low: float, right: float, high: float) -> None:
     """What is between two plates: full while locked, hatched while slipping, nothing while open."""
     if shown.state == LOCKED:
         pen.box(left, low, right, high, look=ink(shown, 0.4)._replace(fill=STATE[LOCKED].colour))
@@ -30,7 +30,7 @@ def lining(pen: Pen, shown: Drawn, left: float, low: float, right: float, high: 
         pen.hatched(left, low, right, high, look=ink(shown, 0.8))
 
 
-def clutch(pen: Pen, shown: Drawn) -> None:
+def clutch(pen: SymbolPen, shown: Drawn) -> None:
     """Two plates."""
     halo(pen, shown)
     lining(pen, shown, -3.2, -9.0, 3.2, 9.0)
@@ -39,7 +39,7 @@ def clutch(pen: Pen, shown: Drawn) -> None:
     ends(pen, shown, -4.0, 4.0)
 
 
-def multi_plate(pen: Pen, shown: Drawn) -> None:
+def multi_plate(pen: SymbolPen, shown: Drawn) -> None:
     """A pack: plates of one side between those of the other."""
     halo(pen, shown)
     lining(pen, shown, -6.0, -7.5, 6.0, 7.5)
@@ -55,7 +55,7 @@ def multi_plate(pen: Pen, shown: Drawn) -> None:
     pen.line((-6.0, -11.0), (6.0, -11.0), look=dark)
 
 
-def cone(pen: Pen, shown: Drawn) -> None:
+def cone(pen: SymbolPen, shown: Drawn) -> None:
     """Two slanted faces, above and below the axis."""
     halo(pen, shown)
     for sign in (1.0, -1.0):
@@ -74,7 +74,7 @@ def cone(pen: Pen, shown: Drawn) -> None:
     ends(pen, shown, -6.0, 6.0)
 
 
-def freewheel(pen: Pen, shown: Drawn) -> None:
+def freewheel(pen: SymbolPen, shown: Drawn) -> None:
     """Two rings and a wedge that points from what drives to what may run ahead."""
     halo(pen, shown)
     full = ink(shown, 1.0)._replace(fill=STATE[LOCKED].colour if shown.state == LOCKED else PAPER)
@@ -86,21 +86,21 @@ def freewheel(pen: Pen, shown: Drawn) -> None:
     ends(pen, shown, -6.0, 6.0)
 
 
-def sprag(pen: Pen, shown: Drawn) -> None:
+def sprag(pen: SymbolPen, shown: Drawn) -> None:
     """A freewheel with the sprags drawn."""
     freewheel(pen, shown)
     for x in (-4.5, -0.5):
         pen.line((x, 8.6), (x + 3.0, 11.5), look=ink(shown, 1.2))
 
 
-def limiter(pen: Pen, shown: Drawn) -> None:
+def limiter(pen: SymbolPen, shown: Drawn) -> None:
     """Two plates that a spring presses together."""
     clutch(pen, shown)
     pen.line((-15.0, 8.0), (-12.6, 8.0), (-11.6, 10.5), (-9.8, 5.5), (-8.0, 10.5), (-7.0, 8.0), look=ink(shown, 0.9))
     pen.arrow((-4.8, 8.0), (1.0, 0.0), 3.0, look=ink(shown))
 
 
-def centrifugal(pen: Pen, shown: Drawn) -> None:
+def centrifugal(pen: SymbolPen, shown: Drawn) -> None:
     """A drum, and shoes that go outwards."""
     halo(pen, shown)
     pen.line((6.0, -11.0), (6.0, 11.0), look=ink(shown, 2.2))
@@ -113,7 +113,7 @@ def centrifugal(pen: Pen, shown: Drawn) -> None:
     ends(pen, shown, -1.5, 6.0)
 
 
-def disc_brake(pen: Pen, shown: Drawn) -> None:
+def disc_brake(pen: SymbolPen, shown: Drawn) -> None:
     """A disc between two pads."""
     halo(pen, shown)
     pen.line((0.0, -11.0), (0.0, 9.0), look=ink(shown, 2.2))
@@ -125,7 +125,7 @@ def disc_brake(pen: Pen, shown: Drawn) -> None:
     ends(pen, shown, 0.0, 8.0)
 
 
-def drum_brake(pen: Pen, shown: Drawn) -> None:
+def drum_brake(pen: SymbolPen, shown: Drawn) -> None:
     """A drum with two shoes inside."""
     halo(pen, shown)
     pen.circle(0.0, 0.0, 10.0, look=ink(shown, 1.8)._replace(fill=PAPER))
@@ -136,7 +136,7 @@ def drum_brake(pen: Pen, shown: Drawn) -> None:
     ends(pen, shown, -10.0, 10.0)
 
 
-def band_brake(pen: Pen, shown: Drawn) -> None:
+def band_brake(pen: SymbolPen, shown: Drawn) -> None:
     """A drum with a band around it."""
     halo(pen, shown)
     pen.circle(0.0, 0.0, 7.0, look=ink(shown, 1.4)._replace(fill="#DDE3EA"))
@@ -146,7 +146,7 @@ def band_brake(pen: Pen, shown: Drawn) -> None:
     ends(pen, shown, -7.0, 9.6)
 
 
-def bearing(pen: Pen, shown: Drawn) -> None:
+def bearing(pen: SymbolPen, shown: Drawn) -> None:
     """A shaft between two blocks of the housing."""
     halo(pen, shown, 11.5, 11.0)
     for sign in (1.0, -1.0):

@@ -6,18 +6,18 @@ from contextlib import suppress
 from math import isfinite
 from typing import Any
 
-from clutchwork.schematic.look import BODY, GREY, INK, LOCKED, OPEN, PLATE, SHAFT, STATE, THIN, TINY, Look
-from clutchwork.schematic.pen import Pen
+from clutchwork.schematic.look import BODY, GREY, INK, LOCKED, OPEN, PLATE, SHAFT, STATE, THIN, TINY, MarkStyle
+from clutchwork.schematic.pen import SymbolPen
 from clutchwork.schematic.symbols.contacts import CONTACTS, halo, ink, lining
 from clutchwork.schematic.symbols.symbol import LEFT, RIGHT, Drawn, Symbol, wall
 
 # rows of a planetary set
 RING, CARRIER, SUN = 17.0, 0.0, -17.0
-TOOTH = Look(width=1.8)
+TOOTH = MarkStyle(width=1.8)
 PITCH = 26.0  # distance of the axes of a pair
 
 
-def out(pen: Pen, shown: Drawn, port: str, start: float, letter: str = "") -> None:
+def out(pen: SymbolPen, shown: Drawn, port: str, start: float, letter: str = "") -> None:
     """The line of a port from the middle to its side, or to the housing."""
     y = shown.pins.get(port, 0.0)
     side = shown.sides.get(port)
@@ -30,7 +30,7 @@ def out(pen: Pen, shown: Drawn, port: str, start: float, letter: str = "") -> No
         pen.text(side * (shown.half - 4.5), y + 1.8, letter, TINY, GREY)
 
 
-def planetary(pen: Pen, shown: Drawn) -> None:
+def planetary(pen: SymbolPen, shown: Drawn) -> None:
     """Ring, planet on its carrier, sun."""
     pen.line((0.0, -7.5), (0.0, 7.5), look=TOOTH)
     for y in (-7.5, 7.5):
@@ -41,7 +41,7 @@ def planetary(pen: Pen, shown: Drawn) -> None:
     _members(pen, shown, 0.0)
 
 
-def double_planetary(pen: Pen, shown: Drawn) -> None:
+def double_planetary(pen: SymbolPen, shown: Drawn) -> None:
     """The same with two planets that mesh."""
     for x, low, high in ((-5.5, -7.5, 4.0), (5.5, -4.0, 7.5)):
         pen.line((x, low), (x, high), look=TOOTH)
@@ -56,7 +56,7 @@ def double_planetary(pen: Pen, shown: Drawn) -> None:
     _members(pen, shown, 5.5)
 
 
-def compound_planetary(pen: Pen, shown: Drawn) -> None:
+def compound_planetary(pen: SymbolPen, shown: Drawn) -> None:
     """Ring, sun, and between them two wheels of a planet on one pin."""
     for x, tall in ((-4.5, 7.5), (4.5, 4.5)):
         pen.line((x, -tall), (x, tall), look=TOOTH)
@@ -69,7 +69,7 @@ def compound_planetary(pen: Pen, shown: Drawn) -> None:
     _members(pen, shown, 0.0)
 
 
-def ravigneaux(pen: Pen, shown: Drawn) -> None:
+def ravigneaux(pen: SymbolPen, shown: Drawn) -> None:
     """Ring, long planet with the large sun, short planet with the small one."""
     pins = shown.pins
     pen.line((-7.0, 3.0), (9.0, 3.0), look=TOOTH)
@@ -86,10 +86,10 @@ def ravigneaux(pen: Pen, shown: Drawn) -> None:
         out(pen, shown, port, 0.0, letter)
 
 
-def chain(pen: Pen, shown: Drawn) -> None:
+def chain(pen: SymbolPen, shown: Drawn) -> None:
     """Two sprockets with a chain around them."""
     for y in (PITCH / 2, -PITCH / 2):
-        pen.circle(0.0, y, 6.0, look=Look(width=1.2, fill="#DDE3EA"))
+        pen.circle(0.0, y, 6.0, look=MarkStyle(width=1.2, fill="#DDE3EA"))
     for x in (-6.0, 6.0):
         pen.line((x, PITCH / 2), (x, -PITCH / 2), look=INK._replace(width=1.6, dash="dash"))
     for y, port in ((PITCH / 2, "input"), (-PITCH / 2, "output")):
@@ -99,11 +99,11 @@ def chain(pen: Pen, shown: Drawn) -> None:
     out(pen, shown, "support", 0.0)
 
 
-def belt(pen: Pen, shown: Drawn) -> None:
+def belt(pen: SymbolPen, shown: Drawn) -> None:
     """Two pulleys with a belt around them."""
     halo(pen, shown)
     for y in (PITCH / 2, -PITCH / 2):
-        pen.circle(0.0, y, 6.0, look=Look(width=1.2, fill="#DDE3EA"))
+        pen.circle(0.0, y, 6.0, look=MarkStyle(width=1.2, fill="#DDE3EA"))
     crossed = -1.0 if getattr(shown.element, "crossed", False) else 1.0
     for x in (-6.0, 6.0):
         pen.line((x, PITCH / 2), (x * crossed, -PITCH / 2), look=ink(shown, 1.6))
@@ -111,7 +111,7 @@ def belt(pen: Pen, shown: Drawn) -> None:
         out(pen, shown, port, 0.0)
 
 
-def _members(pen: Pen, shown: Drawn, axle: float) -> None:
+def _members(pen: SymbolPen, shown: Drawn, axle: float) -> None:
     pen.circle(-axle, CARRIER, 1.5, look=INK._replace(fill=INK.colour))
     if axle:
         pen.circle(axle, CARRIER, 1.5, look=INK._replace(fill=INK.colour))
@@ -128,7 +128,7 @@ def ratio_of(gear: Any) -> float | None:
     return None
 
 
-def pair(pen: Pen, shown: Drawn) -> None:
+def pair(pen: SymbolPen, shown: Drawn) -> None:
     """Two wheels that mesh, sized by their ratio."""
     ratio = abs(ratio_of(shown.element) or 1.0)
     first = min(max(PITCH / (1.0 + ratio), 6.0), PITCH - 6.0)
@@ -149,9 +149,9 @@ def pair(pen: Pen, shown: Drawn) -> None:
         pen.circle(0.0, 0.0, 1.5, look=INK._replace(fill=INK.colour))
 
 
-def wheel(pen: Pen, shown: Drawn) -> None:
+def wheel(pen: SymbolPen, shown: Drawn) -> None:
     """A wheel on the road."""
-    pen.circle(0.0, 0.0, 12.0, look=Look(width=1.6, fill="#DDE3EA"))
+    pen.circle(0.0, 0.0, 12.0, look=MarkStyle(width=1.6, fill="#DDE3EA"))
     pen.circle(0.0, 0.0, 2.0, look=INK._replace(fill=INK.colour))
     pen.floor(-15.0, 15.0, -12.6)
     for port in ("shaft", "mass"):
@@ -164,7 +164,7 @@ def wheel(pen: Pen, shown: Drawn) -> None:
         pen.line((0.0, 0.0), (0.0, 16.0), (side * shown.half, 16.0), look=SHAFT)
 
 
-def dogs(pen: Pen, shown: Drawn) -> None:
+def dogs(pen: SymbolPen, shown: Drawn) -> None:
     """Two faces with teeth: in mesh where they hold."""
     halo(pen, shown)
     dark = ink(shown, 1.8)
@@ -184,7 +184,7 @@ def dogs(pen: Pen, shown: Drawn) -> None:
     )
 
 
-def synchroniser(pen: Pen, shown: Drawn) -> None:
+def synchroniser(pen: SymbolPen, shown: Drawn) -> None:
     """A sleeve between two gears, each with a cone and teeth."""
     box = BODY._replace(fill="#F3F5F8", colour=STATE[shown.state].colour if shown.state != OPEN else INK.colour)
     pen.box(-12.0, -20.0, 12.0, 20.0, look=box)
@@ -203,7 +203,7 @@ def synchroniser(pen: Pen, shown: Drawn) -> None:
     out(pen, shown, "hub", 3.0)
 
 
-def transmission(pen: Pen, shown: Drawn) -> None:
+def transmission(pen: SymbolPen, shown: Drawn) -> None:
     """A housing with a row of sets in it."""
     pen.box(-18.0, -15.0, 18.0, 15.0, look=BODY._replace(fill="#F3F5F8"))
     for x in (-9.0, 0.0, 9.0):

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from math import cos, pi, sin
 
-from clutchwork.schematic.look import HEAT, PAPER, SIGNAL_BODY, WARM, Look
-from clutchwork.schematic.pen import Pen
+from clutchwork.schematic.look import HEAT, PAPER, SIGNAL_BODY, WARM, MarkStyle
+from clutchwork.schematic.pen import SymbolPen
 from clutchwork.schematic.symbols.symbol import Drawn, Symbol
 
 FILLED = WARM._replace(fill=PAPER)
@@ -13,19 +13,19 @@ SLOT = SIGNAL_BODY._replace(fill=PAPER)
 LIGHT = "#F9DEDC"
 
 
-def _ends(pen: Pen, shown: Drawn, half: float) -> None:
+def _ends(pen: SymbolPen, shown: Drawn, half: float) -> None:
     for side in shown.sides.values():
         pen.line((side * half, 0.0), (side * shown.half, 0.0), look=HEAT)
 
 
-def conduction(pen: Pen, shown: Drawn) -> None:
+def conduction(pen: SymbolPen, shown: Drawn) -> None:
     """A wall."""
     pen.box(-7.0, -7.0, 7.0, 7.0, look=FILLED)
     pen.hatched(-7.0, -7.0, 7.0, 7.0, look=WARM._replace(width=0.5))
     _ends(pen, shown, 7.0)
 
 
-def convection(pen: Pen, shown: Drawn) -> None:
+def convection(pen: SymbolPen, shown: Drawn) -> None:
     """Air that passes a wall."""
     pen.box(-8.0, -7.0, -5.0, 7.0, look=WARM._replace(fill=LIGHT))
     for y in (-4.6, 0.0, 4.6):
@@ -35,7 +35,7 @@ def convection(pen: Pen, shown: Drawn) -> None:
     _ends(pen, shown, 8.0)
 
 
-def oil(pen: Pen, shown: Drawn) -> None:
+def oil(pen: SymbolPen, shown: Drawn) -> None:
     """A drop."""
     pen.box(-7.5, -8.5, 7.5, 8.5, look=FILLED)
     angles = [0.16 * pi - 0.066 * pi * k for k in range(21)]
@@ -44,7 +44,7 @@ def oil(pen: Pen, shown: Drawn) -> None:
     _ends(pen, shown, 7.5)
 
 
-def plate(pen: Pen, shown: Drawn) -> None:
+def plate(pen: SymbolPen, shown: Drawn) -> None:
     """A plate in layers."""
     pen.box(-9.0, -9.0, 9.0, 9.0, look=WARM._replace(fill=LIGHT))
     for x in (-5.0, -1.0, 3.0):
@@ -52,7 +52,7 @@ def plate(pen: Pen, shown: Drawn) -> None:
     _ends(pen, shown, 9.0)
 
 
-def piston(pen: Pen, _: Drawn) -> None:
+def piston(pen: SymbolPen, _: Drawn) -> None:
     """A cylinder with its piston and the return spring."""
     pen.line((9.0, 6.0), (-9.0, 6.0), (-9.0, -6.0), (9.0, -6.0), look=SIGNAL_BODY)
     pen.box(-2.5, -5.4, 0.5, 5.4, look=SIGNAL_BODY._replace(fill="#E6DDF0"))
@@ -60,7 +60,7 @@ def piston(pen: Pen, _: Drawn) -> None:
     pen.line((1.0, 3.0), (3.0, 5.0), (5.0, 1.6), (7.0, 5.0), (8.5, 3.0), look=SIGNAL_BODY._replace(width=0.7))
 
 
-def diaphragm(pen: Pen, _: Drawn) -> None:
+def diaphragm(pen: SymbolPen, _: Drawn) -> None:
     """The fingers of a diaphragm spring."""
     pen.box(-11.0, -8.0, 11.0, 8.0, look=SLOT)
     for sign in (1.0, -1.0):
@@ -68,7 +68,7 @@ def diaphragm(pen: Pen, _: Drawn) -> None:
         pen.circle(-2.0, sign * 5.0, 1.0, look=SIGNAL_BODY)
 
 
-def weights(pen: Pen, _: Drawn) -> None:
+def weights(pen: SymbolPen, _: Drawn) -> None:
     """Two masses that go outwards."""
     pen.box(-11.0, -9.0, 11.0, 9.0, look=SLOT)
     pen.line((-9.0, 0.0), (9.0, 0.0), look=SIGNAL_BODY)
@@ -77,7 +77,7 @@ def weights(pen: Pen, _: Drawn) -> None:
         pen.circle(3.0, sign * 5.0, 2.2, look=SIGNAL_BODY._replace(fill="#E6DDF0"))
 
 
-def wear(pen: Pen, _: Drawn) -> None:
+def wear(pen: SymbolPen, _: Drawn) -> None:
     """A lining that gets thinner."""
     pen.box(-11.0, -8.0, 11.0, 8.0, look=SLOT)
     pen.area((-8.0, -6.0), (8.0, -6.0), (8.0, 0.0), (4.0, 1.2), (0.0, 0.0), (-4.0, 1.6), (-8.0, 0.2),
@@ -85,13 +85,13 @@ def wear(pen: Pen, _: Drawn) -> None:
     pen.line((-8.0, 5.0), (8.0, 5.0), look=SIGNAL_BODY._replace(dash="dash", width=0.7))
 
 
-def process(pen: Pen, _: Drawn) -> None:
+def process(pen: SymbolPen, _: Drawn) -> None:
     """Any other process: what it does is integrated."""
     pen.box(-11.0, -8.0, 11.0, 8.0, look=SLOT)
     pen.text(0.0, -3.4, "∫", 10.0, SIGNAL_BODY.colour)
 
 
-def flow(pen: Pen, shown: Drawn) -> None:
+def flow(pen: SymbolPen, shown: Drawn) -> None:
     """Any other heat flow."""
     pen.box(-7.5, -7.5, 7.5, 7.5, look=FILLED)
     pen.arrow((5.0, 0.0), (1.0, 0.0), 4.5, look=WARM)
@@ -99,9 +99,9 @@ def flow(pen: Pen, shown: Drawn) -> None:
     _ends(pen, shown, 7.5)
 
 
-def capacity(pen: Pen, _: Drawn) -> None:
+def capacity(pen: SymbolPen, _: Drawn) -> None:
     """A mass that holds heat."""
-    pen.box(-8.0, -9.0, 8.0, 9.0, look=Look(WARM.colour, 1.2, LIGHT))
+    pen.box(-8.0, -9.0, 8.0, 9.0, look=MarkStyle(WARM.colour, 1.2, LIGHT))
     pen.line((-3.0, 0.0), (-3.0, -4.6), look=WARM._replace(width=1.6))
     pen.arc(-3.0, -5.0, 1.8, 0.0, 2 * pi, look=WARM._replace(fill=WARM.colour))
     pen.line((-4.6, -3.4), (-4.6, 6.0), (-1.4, 6.0), (-1.4, -3.4), look=WARM._replace(width=0.7))
@@ -109,7 +109,7 @@ def capacity(pen: Pen, _: Drawn) -> None:
         pen.line((0.6, y), (3.6, y), look=WARM._replace(width=0.7))
 
 
-def ambient(pen: Pen, _: Drawn) -> None:
+def ambient(pen: SymbolPen, _: Drawn) -> None:
     """Surroundings, which have no end."""
     pen.arc(-4.5, -1.0, 5.0, 0.45 * pi, 1.5 * pi, look=WARM)
     pen.arc(0.5, 2.5, 5.5, 0.08 * pi, 0.9 * pi, look=WARM)
@@ -117,7 +117,7 @@ def ambient(pen: Pen, _: Drawn) -> None:
     pen.line((-4.5, -6.0), (5.0, -6.0), look=WARM)
 
 
-def source(pen: Pen, shown: Drawn) -> None:
+def source(pen: SymbolPen, shown: Drawn) -> None:
     """Heat that an element makes."""
     for x in (-4.0, 0.0, 4.0):
         wave = [(x + 1.3 * sin(0.25 * pi * k), -5.0 + 0.9 * k) for k in range(10)]

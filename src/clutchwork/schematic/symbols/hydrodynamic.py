@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from clutchwork.schematic.look import INK
-from clutchwork.schematic.pen import Pen
+from clutchwork.schematic.pen import SymbolPen
 from clutchwork.schematic.symbols.gears import out, wheel
 from clutchwork.schematic.symbols.symbol import LEFT, RIGHT, Drawn, Symbol, ends
 
@@ -11,7 +11,7 @@ SHELL = INK._replace(width=1.2)
 SUPPORT = -16.0
 
 
-def _shells(pen: Pen, gap: float, low: float = 2.5) -> None:
+def _shells(pen: SymbolPen, gap: float, low: float = 2.5) -> None:
     """Two half shells that face each other, above the shaft and below."""
     for side in (LEFT, RIGHT):
         for sign in (1.0, -1.0):
@@ -21,13 +21,13 @@ def _shells(pen: Pen, gap: float, low: float = 2.5) -> None:
         pen.line((side * 8.0, 6.7), (side * 8.0, -6.7), look=SHELL)
 
 
-def fluid_coupling(pen: Pen, shown: Drawn) -> None:
+def fluid_coupling(pen: SymbolPen, shown: Drawn) -> None:
     """Two half shells."""
     _shells(pen, 1.6)
     ends(pen, shown, -8.0, 8.0)
 
 
-def torque_converter(pen: Pen, shown: Drawn) -> None:
+def torque_converter(pen: SymbolPen, shown: Drawn) -> None:
     """The same with a stator between them, at the support."""
     _shells(pen, 2.4, 3.5)
     for sign in (1.0, -1.0):

@@ -2,21 +2,21 @@
 
 from __future__ import annotations
 
-from clutchwork.schematic.look import BODY, INK, SHAFT, THIN, Look
-from clutchwork.schematic.pen import Pen
+from clutchwork.schematic.look import BODY, INK, SHAFT, THIN, MarkStyle
+from clutchwork.schematic.pen import SymbolPen
 from clutchwork.schematic.symbols.gears import PAIR, PITCH
 from clutchwork.schematic.symbols.symbol import LEFT, RIGHT, Drawn, Symbol, wall
 
 PIN = INK._replace(fill=INK.colour)
 
 
-def variable(pen: Pen, shown: Drawn) -> None:
+def variable(pen: SymbolPen, shown: Drawn) -> None:
     """Two cones with a belt between them, and the arrow of what can be set."""
     for y, sign in ((PITCH / 2, 1.0), (-PITCH / 2, -1.0)):
         tall = 4.0 + 3.0 * sign
         pen.area((-7.0, y - tall), (-7.0, y + tall), (7.0, y + 11.0 - tall), (7.0, y - 11.0 + tall), look=BODY)
     for y in (-7.5, 7.5):
-        pen.line((0.0, PITCH / 2 + y * 0.7), (0.0, -PITCH / 2 + y * 0.7), look=Look(width=1.4))
+        pen.line((0.0, PITCH / 2 + y * 0.7), (0.0, -PITCH / 2 + y * 0.7), look=MarkStyle(width=1.4))
     pen.line((-11.0, -9.0), (11.0, 9.0), look=THIN)
     pen.arrow((11.0, 9.0), (0.77, 0.63), look=THIN)
     for port in ("input", "output"):
@@ -30,12 +30,12 @@ def variable(pen: Pen, shown: Drawn) -> None:
         pen.circle(0.0, 0.0, 1.5, look=PIN)
 
 
-def joint(pen: Pen, shown: Drawn) -> None:
+def joint(pen: SymbolPen, shown: Drawn) -> None:
     """Two yokes, crossed."""
     for side in (-1.0, 1.0):
-        pen.line((side * 9.0, 0.0), (side * 5.0, 7.0 * side), (0.0, 7.0 * side), look=Look(width=1.8))
-        pen.line((side * 9.0, 0.0), (side * 5.0, -7.0 * side), (0.0, -7.0 * side), look=Look(width=1.8))
-    pen.line((0.0, -8.5), (0.0, 8.5), look=Look(width=1.2))
+        pen.line((side * 9.0, 0.0), (side * 5.0, 7.0 * side), (0.0, 7.0 * side), look=MarkStyle(width=1.8))
+        pen.line((side * 9.0, 0.0), (side * 5.0, -7.0 * side), (0.0, -7.0 * side), look=MarkStyle(width=1.8))
+    pen.line((0.0, -8.5), (0.0, 8.5), look=MarkStyle(width=1.2))
     pen.circle(0.0, 0.0, 2.4, look=BODY)
     for port in ("base", "follower"):
         end = shown.sides.get(port)
@@ -48,14 +48,14 @@ def joint(pen: Pen, shown: Drawn) -> None:
         pen.line((0.0, -8.5), (0.0, y), (side * shown.half, y), look=shown.line)
 
 
-def crank(pen: Pen, shown: Drawn) -> None:
+def crank(pen: SymbolPen, shown: Drawn) -> None:
     """A crank, its rod and what it moves in a guide."""
     pen.circle(-8.0, 0.0, 7.0, look=BODY)
-    pen.line((-8.0, 0.0), (-4.5, 6.0), look=Look(width=1.8))
+    pen.line((-8.0, 0.0), (-4.5, 6.0), look=MarkStyle(width=1.8))
     pen.line((-4.5, 6.0), (9.0, 0.0), look=INK)
     for x, y in ((-8.0, 0.0), (-4.5, 6.0), (9.0, 0.0)):
         pen.circle(x, y, 1.4, look=PIN)
-    pen.box(6.0, -4.0, 14.0, 4.0, look=Look(width=1.2))
+    pen.box(6.0, -4.0, 14.0, 4.0, look=MarkStyle(width=1.2))
     for y in (-5.2, 5.2):
         pen.line((3.0, y), (17.0, y), look=THIN)
     for port, start in (("shaft", -8.0), ("mass", 14.0)):
@@ -65,11 +65,11 @@ def crank(pen: Pen, shown: Drawn) -> None:
             pen.line((start if start * side > 0 else 0.0, 0.0), (side * shown.half, 0.0), look=look)
 
 
-def cam(pen: Pen, shown: Drawn) -> None:
+def cam(pen: SymbolPen, shown: Drawn) -> None:
     """An eccentric disc and what it pushes in a guide."""
     pen.circle(-8.0, 0.0, 7.0, look=BODY)
     pen.circle(-10.5, 0.0, 1.4, look=PIN)
-    pen.line((-1.0, -5.0), (-1.0, 5.0), look=Look(width=1.8))
+    pen.line((-1.0, -5.0), (-1.0, 5.0), look=MarkStyle(width=1.8))
     pen.line((-1.0, 0.0), (14.0, 0.0), look=INK)
     for y in (-2.6, 2.6):
         pen.line((3.0, y), (11.0, y), look=THIN)

@@ -7,8 +7,8 @@ from dataclasses import field
 from typing import Any
 
 from clutchwork.base.classes import dataclass
-from clutchwork.schematic.look import SHAFT, Look
-from clutchwork.schematic.pen import Pen
+from clutchwork.schematic.look import SHAFT, MarkStyle
+from clutchwork.schematic.pen import SymbolPen
 
 LEFT, RIGHT = -1, 1
 
@@ -21,7 +21,7 @@ class Drawn:
     sides: Mapping[str, int]  # port -> LEFT or RIGHT; the others are at the housing or at nothing
     fixed: frozenset[str] = frozenset()  # ports at the housing
     state: str = ""
-    line: Look = SHAFT  # of what it is attached to
+    line: MarkStyle = SHAFT  # of what it is attached to
     parts: frozenset[str] = frozenset()  # states of its parts, such as "forward:locked"
     half: float = 16.0
     pins: Mapping[str, float] = field(default_factory=dict)  # y of each port
@@ -31,7 +31,7 @@ class Drawn:
 class Symbol:
     """A symbol about its middle; `pins` are the heights of its ports where they are not zero."""
 
-    draw: Callable[[Pen, Drawn], None]
+    draw: Callable[[SymbolPen, Drawn], None]
     half: float = 16.0  # pt, to the ends of its lines
     up: float = 12.0
     down: float = 12.0
@@ -43,7 +43,7 @@ class Symbol:
         return self.pins(element) if callable(self.pins) else self.pins
 
 
-def ends(pen: Pen, shown: Drawn, left: float, right: float) -> None:
+def ends(pen: SymbolPen, shown: Drawn, left: float, right: float) -> None:
     """Lines to both ends of a symbol with two ports; the housing where nothing is attached."""
     for side, to in ((LEFT, left), (RIGHT, right)):
         if side in shown.sides.values():
@@ -52,10 +52,10 @@ def ends(pen: Pen, shown: Drawn, left: float, right: float) -> None:
             wall(pen, side, to, shown)
 
 
-def wall(pen: Pen, side: int, to: float, shown: Drawn, y: float = 0.0, tall: float = 8.0) -> None:
+def wall(pen: SymbolPen, side: int, to: float, shown: Drawn, y: float = 0.0, tall: float = 8.0) -> None:
     """A line that ends at the housing."""
     pen.line((to, y), (side * (shown.half - 4.0), y), look=shown.line)
-    flipped = Pen()
+    flipped = SymbolPen()
     flipped.ground(shown.half - 4.0, y - tall, y + tall)
     for mark in flipped.marks:
         pen.line(*((side * a, b) for a, b in mark.points), look=mark.look)  # type: ignore[union-attr]

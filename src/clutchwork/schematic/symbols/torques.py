@@ -7,12 +7,12 @@ from contextlib import suppress
 from math import pi, tanh
 from typing import Any
 
-from clutchwork.schematic.look import BLANK, BODY, GREY, INK, THIN, Look
-from clutchwork.schematic.pen import Pen, Point
+from clutchwork.schematic.look import BLANK, BODY, GREY, INK, THIN, MarkStyle
+from clutchwork.schematic.pen import Point, SymbolPen
 from clutchwork.schematic.symbols.symbol import LEFT, RIGHT, Drawn, Symbol, ends, wall
 
 
-def zigzag(pen: Pen, left: float, right: float, y: float, tall: float = 4.0) -> None:
+def zigzag(pen: SymbolPen, left: float, right: float, y: float, tall: float = 4.0) -> None:
     """A spring."""
     start, stop, count = left + 2.5, right - 2.5, 6
     step = (stop - start) / count
@@ -20,7 +20,7 @@ def zigzag(pen: Pen, left: float, right: float, y: float, tall: float = 4.0) -> 
     pen.line((left, y), (start, y), *peaks, (stop, y), (right, y), look=INK._replace(width=1.2))
 
 
-def dashpot(pen: Pen, left: float, right: float, y: float, tall: float = 4.0) -> None:
+def dashpot(pen: SymbolPen, left: float, right: float, y: float, tall: float = 4.0) -> None:
     """A damper."""
     middle = 0.5 * (left + right)
     pen.line((middle + 4.0, y - tall), (middle - 4.5, y - tall), (middle - 4.5, y + tall), (middle + 4.0, y + tall))
@@ -29,19 +29,19 @@ def dashpot(pen: Pen, left: float, right: float, y: float, tall: float = 4.0) ->
     pen.line((middle + 1.0, y), (right, y))
 
 
-def spring(pen: Pen, shown: Drawn) -> None:
+def spring(pen: SymbolPen, shown: Drawn) -> None:
     """A spring between two shafts."""
     zigzag(pen, -14.0, 14.0, 0.0, 6.0)
     ends(pen, shown, -14.0, 14.0)
 
 
-def damper(pen: Pen, shown: Drawn) -> None:
+def damper(pen: SymbolPen, shown: Drawn) -> None:
     """A damper between two shafts."""
     dashpot(pen, -12.0, 12.0, 0.0, 6.0)
     ends(pen, shown, -12.0, 12.0)
 
 
-def spring_damper(pen: Pen, shown: Drawn) -> None:
+def spring_damper(pen: SymbolPen, shown: Drawn) -> None:
     """Both in parallel."""
     for x in (-14.0, 14.0):
         pen.line((x, -7.0), (x, 7.0), look=INK._replace(width=1.2))
@@ -50,7 +50,7 @@ def spring_damper(pen: Pen, shown: Drawn) -> None:
     ends(pen, shown, -14.0, 14.0)
 
 
-def flexible_shaft(pen: Pen, shown: Drawn) -> None:
+def flexible_shaft(pen: SymbolPen, shown: Drawn) -> None:
     """Inertias with springs between them."""
     for x in (-16.0, 0.0, 16.0):
         pen.box(x - 1.6, -7.0, x + 1.6, 7.0, look=BODY._replace(width=1.0))
@@ -59,14 +59,14 @@ def flexible_shaft(pen: Pen, shown: Drawn) -> None:
     ends(pen, shown, -17.6, 17.6)
 
 
-def nonlinear_spring(pen: Pen, shown: Drawn) -> None:
+def nonlinear_spring(pen: SymbolPen, shown: Drawn) -> None:
     """A spring with a bent line across it."""
     zigzag(pen, -14.0, 14.0, 0.0, 6.0)
     pen.line((-11.0, -9.0), (-4.0, -2.5), (4.0, 2.5), (11.0, 9.0), look=THIN)
     ends(pen, shown, -14.0, 14.0)
 
 
-def jenkins_element(pen: Pen, shown: Drawn) -> None:
+def jenkins_element(pen: SymbolPen, shown: Drawn) -> None:
     """A spring in series with two plates that rub."""
     zigzag(pen, -14.0, 3.0, 0.0, 6.0)
     pen.line((3.0, 0.0), (9.0, 0.0), look=INK._replace(width=2.0))
@@ -76,7 +76,7 @@ def jenkins_element(pen: Pen, shown: Drawn) -> None:
     ends(pen, shown, -14.0, 13.0)
 
 
-def torsional_damper(pen: Pen, shown: Drawn) -> None:
+def torsional_damper(pen: SymbolPen, shown: Drawn) -> None:
     """A spring with a bent line across it, and a spring in series with plates that rub, in parallel."""
     for x in (-14.0, 14.0):
         pen.line((x, -7.0), (x, 7.0), look=INK._replace(width=1.2))
@@ -89,7 +89,7 @@ def torsional_damper(pen: Pen, shown: Drawn) -> None:
     ends(pen, shown, -14.0, 14.0)
 
 
-def wet_drag(pen: Pen, shown: Drawn) -> None:
+def wet_drag(pen: SymbolPen, shown: Drawn) -> None:
     """Two plates with oil between them."""
     for x in (-7.0, 7.0):
         pen.line((x, -11.0), (x, 11.0), look=INK._replace(width=2.0))
@@ -98,7 +98,7 @@ def wet_drag(pen: Pen, shown: Drawn) -> None:
     ends(pen, shown, -7.0, 7.0)
 
 
-def _to_shaft(pen: Pen, shown: Drawn, radius: float) -> None:
+def _to_shaft(pen: SymbolPen, shown: Drawn, radius: float) -> None:
     for side in (LEFT, RIGHT):
         if side in shown.sides.values():
             pen.line((side * radius, 0.0), (side * shown.half, 0.0), look=shown.line)
@@ -106,7 +106,7 @@ def _to_shaft(pen: Pen, shown: Drawn, radius: float) -> None:
         wall(pen, LEFT, -radius, shown)
 
 
-def torque(pen: Pen, shown: Drawn) -> None:
+def torque(pen: SymbolPen, shown: Drawn) -> None:
     """A circle with an arrow: around a shaft, along a line."""
     pen.circle(0.0, 0.0, 10.5, look=BLANK)
     if shown.line.colour != INK.colour:
@@ -118,40 +118,40 @@ def torque(pen: Pen, shown: Drawn) -> None:
     _to_shaft(pen, shown, 10.5)
 
 
-def prescribed(turning: str, moving: str) -> Callable[[Pen, Drawn], None]:
+def prescribed(turning: str, moving: str) -> Callable[[SymbolPen, Drawn], None]:
     """Two circles with the letter of the motion, of a shaft or of a mass."""
 
-    def draw(pen: Pen, shown: Drawn) -> None:
+    def draw(pen: SymbolPen, shown: Drawn) -> None:
         pen.circle(0.0, 0.0, 10.5, look=BLANK)
-        pen.circle(0.0, 0.0, 8.6, look=Look(width=0.6))
+        pen.circle(0.0, 0.0, 8.6, look=MarkStyle(width=0.6))
         pen.text(0.0, -2.8, turning if shown.line.colour == INK.colour else moving, 9.5)
         _to_shaft(pen, shown, 10.5)
 
     return draw
 
 
-def motor(pen: Pen, shown: Drawn) -> None:
+def motor(pen: SymbolPen, shown: Drawn) -> None:
     """A circle with the letter of a machine."""
     pen.circle(0.0, 0.0, 10.5, look=BLANK)
     pen.text(0.0, -3.2, "M", 10.0)
     _to_shaft(pen, shown, 10.5)
 
 
-def engine(pen: Pen, shown: Drawn) -> None:
+def engine(pen: SymbolPen, shown: Drawn) -> None:
     """A cylinder with its piston and a crank."""
     pen.box(-11.0, -10.5, 11.0, 10.5, look=BLANK)
     pen.line((-4.5, 8.5), (-4.5, -0.5), look=INK._replace(width=1.2))
     pen.line((4.5, 8.5), (4.5, -0.5), look=INK._replace(width=1.2))
     pen.box(-3.6, 1.5, 3.6, 5.5, look=BODY)
     pen.line((0.0, 3.0), (2.4, -5.2), look=INK._replace(width=1.4))
-    pen.circle(0.0, -5.6, 3.2, look=Look(width=0.8))
+    pen.circle(0.0, -5.6, 3.2, look=MarkStyle(width=0.8))
     _to_shaft(pen, shown, 11.0)
 
 
-def over_speed(points: Callable[[Any], list[Point]]) -> Callable[[Pen, Drawn], None]:
+def over_speed(points: Callable[[Any], list[Point]]) -> Callable[[SymbolPen, Drawn], None]:
     """A box with the course of a torque over the speed."""
 
-    def draw(pen: Pen, shown: Drawn) -> None:
+    def draw(pen: SymbolPen, shown: Drawn) -> None:
         pen.box(-11.0, -10.0, 11.0, 10.0, look=BLANK)
         found = points(shown.element)
         least, most = min(y for _, y in found), max(y for _, y in found)
@@ -215,7 +215,7 @@ def _retarder(element: Any) -> list[Point]:
     return [(0.0, 0.0), (0.5, -1.0), (1.0, -1.0)]
 
 
-def motion_sensor(pen: Pen, shown: Drawn) -> None:
+def motion_sensor(pen: SymbolPen, shown: Drawn) -> None:
     """A dial with a needle, on thin lines, for it carries nothing."""
     pen.circle(0.0, 0.0, 10.5, look=BLANK)
     pen.arc(0.0, -3.0, 8.0, 0.15 * pi, 0.85 * pi, look=THIN)
@@ -227,7 +227,7 @@ def motion_sensor(pen: Pen, shown: Drawn) -> None:
             wall(pen, side, side * 10.5, shown)
 
 
-def torque_sensor(pen: Pen, shown: Drawn) -> None:
+def torque_sensor(pen: SymbolPen, shown: Drawn) -> None:
     """A dial around a shaft that goes through."""
     pen.circle(0.0, 0.0, 10.5, look=BLANK)
     pen.arc(0.0, 1.0, 6.5, 0.15 * pi, 0.85 * pi, look=THIN)
@@ -236,7 +236,7 @@ def torque_sensor(pen: Pen, shown: Drawn) -> None:
     ends(pen, shown, -10.5, 10.5)
 
 
-def unknown(pen: Pen, shown: Drawn) -> None:
+def unknown(pen: SymbolPen, shown: Drawn) -> None:
     """An element that has no symbol of its own: a box, its ports one below the other."""
     tall = max(10.0, *(abs(y) + 6.0 for y in shown.pins.values())) if shown.pins else 10.0
     pen.box(-12.0, -tall, 12.0, tall, look=BODY)

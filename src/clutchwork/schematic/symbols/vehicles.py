@@ -4,21 +4,21 @@ from __future__ import annotations
 
 from math import pi, sin
 
-from clutchwork.schematic.look import BLANK, BODY, INK, SIGNAL_BODY, THIN, Look
-from clutchwork.schematic.pen import Pen
+from clutchwork.schematic.look import BLANK, BODY, INK, SIGNAL_BODY, THIN, MarkStyle
+from clutchwork.schematic.pen import SymbolPen
 from clutchwork.schematic.symbols.heat import SLOT
 from clutchwork.schematic.symbols.symbol import Drawn, Symbol
 
-WHEEL = Look(width=1.2, fill="#DDE3EA")
+WHEEL = MarkStyle(width=1.2, fill="#DDE3EA")
 AIR = THIN._replace(colour="#0072B2", width=0.9)
 
 
-def _joined(pen: Pen, shown: Drawn, half: float) -> None:
+def _joined(pen: SymbolPen, shown: Drawn, half: float) -> None:
     for side in shown.sides.values():
         pen.line((side * half, 0.0), (side * shown.half, 0.0), look=shown.line)
 
 
-def vehicle(pen: Pen, shown: Drawn) -> None:
+def vehicle(pen: SymbolPen, shown: Drawn) -> None:
     """A car on a road."""
     pen.area((-13.0, -5.0), (-13.0, 0.0), (-8.0, 1.5), (-4.0, 7.0), (5.0, 7.0), (9.0, 1.5), (13.0, 0.0), (13.0, -5.0),
              look=BODY)  # fmt: skip
@@ -28,7 +28,7 @@ def vehicle(pen: Pen, shown: Drawn) -> None:
     _joined(pen, shown, 13.0)
 
 
-def grade(pen: Pen, shown: Drawn) -> None:
+def grade(pen: SymbolPen, shown: Drawn) -> None:
     """A wedge with a weight on it."""
     pen.area((-10.0, -8.0), (10.0, -8.0), (10.0, 2.0), look=BODY)
     pen.circle(0.0, 1.5, 4.2, look=WHEEL)
@@ -37,7 +37,7 @@ def grade(pen: Pen, shown: Drawn) -> None:
     _joined(pen, shown, 10.0)
 
 
-def drag(pen: Pen, shown: Drawn) -> None:
+def drag(pen: SymbolPen, shown: Drawn) -> None:
     """Air around a body."""
     pen.area((-7.0, 0.0), (-3.0, 3.0), (5.0, 2.0), (8.0, 0.0), (5.0, -2.0), (-3.0, -3.0), look=BODY)
     for y in (-8.0, -5.0, 5.0, 8.0):
@@ -46,7 +46,7 @@ def drag(pen: Pen, shown: Drawn) -> None:
     _joined(pen, shown, 8.0)
 
 
-def rolling(pen: Pen, shown: Drawn) -> None:
+def rolling(pen: SymbolPen, shown: Drawn) -> None:
     """A tyre that is flat where it stands."""
     pen.arc(0.0, 0.0, 9.5, -0.3 * pi, 1.3 * pi, look=INK._replace(width=2.4))
     pen.line((-5.6, -7.7), (5.6, -7.7), look=INK._replace(width=2.4))
@@ -55,13 +55,13 @@ def rolling(pen: Pen, shown: Drawn) -> None:
     _joined(pen, shown, 10.0)
 
 
-def road(pen: Pen, _: Drawn) -> None:
+def road(pen: SymbolPen, _: Drawn) -> None:
     """Hills."""
     pen.box(-11.0, -8.0, 11.0, 8.0, look=SLOT)
     pen.line((-9.0, -4.0), (-4.0, -4.0), (1.0, 3.5), (5.0, 1.0), (9.0, 5.0), look=SIGNAL_BODY._replace(width=1.4))
 
 
-def contact(pen: Pen, shown: Drawn) -> None:
+def contact(pen: SymbolPen, shown: Drawn) -> None:
     """A wheel on the road that may slide."""
     pen.circle(0.0, 0.0, 11.0, look=WHEEL)
     pen.circle(0.0, 0.0, 2.0, look=BLANK)
@@ -76,7 +76,7 @@ def contact(pen: Pen, shown: Drawn) -> None:
         pen.line((0.0, 0.0), (0.0, 16.0), (side * shown.half, 16.0), look=shown.line)
 
 
-def driver(pen: Pen, _: Drawn) -> None:
+def driver(pen: SymbolPen, _: Drawn) -> None:
     """A steering wheel."""
     pen.box(-11.0, -8.0, 11.0, 8.0, look=SLOT)
     pen.circle(0.0, 0.0, 6.0, look=SIGNAL_BODY._replace(width=1.6))
@@ -86,7 +86,7 @@ def driver(pen: Pen, _: Drawn) -> None:
     pen.line((0.0, -1.6), (0.0, -6.0), look=SIGNAL_BODY)
 
 
-def valve(pen: Pen, _: Drawn) -> None:
+def valve(pen: SymbolPen, _: Drawn) -> None:
     """A coil that moves a spool."""
     pen.box(-11.0, -8.0, 11.0, 8.0, look=SLOT)
     pen.box(-9.0, -4.0, -3.0, 4.0, look=SIGNAL_BODY)
@@ -96,7 +96,7 @@ def valve(pen: Pen, _: Drawn) -> None:
     pen.line((4.0, -5.0), (4.0, 2.0), look=SIGNAL_BODY)
 
 
-def actuator(pen: Pen, _: Drawn) -> None:
+def actuator(pen: SymbolPen, _: Drawn) -> None:
     """A piston with its spring and an orifice before it."""
     pen.box(-11.0, -8.0, 11.0, 8.0, look=SLOT)
     pen.line((-9.0, 2.0), (-7.0, 0.0), (-9.0, -2.0), look=SIGNAL_BODY)

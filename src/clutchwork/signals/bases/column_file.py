@@ -22,14 +22,14 @@ from numpy.typing import NDArray
 
 from clutchwork.base.classes import dataclass
 from clutchwork.base.errors import FileError, near
+from clutchwork.base.quote import listed, quote
 from clutchwork.base.regular import open_regular, reason
-from clutchwork.base.shown import listed, shown
 from clutchwork.declare.quantity import PLAIN, QuantityError
 from clutchwork.declare.units import Scale
 from clutchwork.signals.bases import sheets
-from clutchwork.signals.bases.column_heads import Head, meant, split
+from clutchwork.signals.bases.column_heads import ColumnHead, meant, split
 from clutchwork.signals.bases.semicolons import with_commas
-from clutchwork.signals.bases.sheets import Sheet
+from clutchwork.signals.bases.sheets import NumericSheet
 
 Array = NDArray[np.float64]
 
@@ -43,7 +43,7 @@ COMMA, NEWLINE, RETURN = 44, 10, 13
 
 
 @dataclass(frozen=True)
-class Wanted:
+class ColumnRequest:
     """What is asked of a file: its path as it was given, the names of its columns, and a factor on the values."""
 
     path: str
@@ -54,18 +54,18 @@ class Wanted:
 
     def error(self, quantity: str, message: str, remedy: str) -> FileError:
         """A single mistake."""
-        return FileError([(quantity, f"{shown(self.path)} {message}", remedy)])
+        return FileError([(quantity, f"{quote(self.path)} {message}", remedy)])
 
 
 @dataclass(frozen=True)
-class Values:
+class ColumnValues:
     """What was read: times and scaled values in SI, one row each, and the column that they are from."""
 
     table: Array
-    head: Head
+    head: ColumnHead
 
 
-def read(where: str, wanted: Wanted) -> Values:
+def read(where: str, wanted: ColumnRequest) -> ColumnValues:
     """The column of the file at a path; FileError names what is wrong with the file, up to a few mistakes."""
     sheet = sheets.known(where)
     made = _column(sheet, wanted) if sheet else None
@@ -84,10 +84,10 @@ def read(where: str, wanted: Wanted) -> Values:
 
 def _folder(where: str) -> str:
     """The folder in which a file is looked for, in full."""
-    return shown(str(Path(where).absolute().parent))
+    return quote(str(Path(where).absolute().parent))
 
 
-def _scaled(table: Array, scales: tuple[Scale, Scale], wanted: Wanted) -> Array:
+def _scaled(table: Array, scales: tuple[Scale, Scale], wanted: ColumnRequest) -> Array:
     """Times and values in SI, all finite and so are the slopes between them."""
     with np.errstate(all="ignore"):
         made = table * [scale.factor for scale in scales]
@@ -102,17 +102,17 @@ def _scaled(table: Array, scales: tuple[Scale, Scale], wanted: Wanted) -> Array:
     return made
 
 
-def _column(sheet: Sheet, wanted: Wanted) -> Values | None:
+def _column(sheet: NumericSheet, wanted: ColumnRequest) -> ColumnValues | None:
     """A column of a file that was read before; None where its times need another look."""
     time, column = _heads(sheet.header, wanted)
     places = [sheet.header.index(time.text), sheet.header.index(column.text)]
     if not sheet.is_plain(places[0]):
         return None
     made, scales = sheet.table[:, places], _scales(time, column, wanted)
-    return Values(made if scales == (PLAIN, PLAIN) else _scaled(made, scales, wanted), column)
+    return ColumnValues(made if scales == (PLAIN, PLAIN) else _scaled(made, scales, wanted), column)
 
 
-def _read(file: BinaryIO, wanted: Wanted, where: str) -> Values:
+def _read(file: BinaryIO, wanted: ColumnRequest, where: str) -> ColumnValues:
     alike = _scan(file, wanted)
     size = file.tell()
     with as_text(file) as text:
@@ -129,7 +129,7 @@ def _read(file: BinaryIO, wanted: Wanted, where: str) -> Values:
         places = header.index(time.text), header.index(column.text)
         made = _at_once(lines, places) if alike else None
         made = _by_cells(_opened(text)[1], header, places, wanted) if made is None else made
-    return Values(_scaled(made, scales, wanted), column)
+    return ColumnValues(_scaled(made, scales, wanted), column)
 
 
 def as_text(file: BinaryIO) -> io.TextIOWrapper:
@@ -144,7 +144,7 @@ def _opened(text: io.TextIOWrapper) -> tuple[list[str], Iterator[list[str]]]:
     return [name.strip() for name in next(lines, [])], lines
 
 
-def _scan(file: BinaryIO, wanted: Wanted) -> bool:
+def _scan(file: BinaryIO, wanted: ColumnRequest) -> bool:
     """Whether all lines are alike and without quotes; a file that is not a table of characters is refused."""
     alike, count, cells = True, 0, -1
     for block in _blocks(file, wanted):
@@ -171,7 +171,7 @@ def _scan(file: BinaryIO, wanted: Wanted) -> bool:
     return alike and count > 1
 
 
-def _blocks(file: BinaryIO, wanted: Wanted) -> Iterator[bytes]:
+def _blocks(file: BinaryIO, wanted: ColumnRequest) -> Iterator[bytes]:
     """Stretches of whole lines, the last one closed where the file does not do so."""
     left = b""
     while block := file.read(BLOCK):
@@ -187,7 +187,7 @@ def _blocks(file: BinaryIO, wanted: Wanted) -> Iterator[bytes]:
         yield left + b"\n"
 
 
-def _heads(header: list[str], wanted: Wanted) -> tuple[Head, Head]:
+def _heads(header: list[str], wanted: ColumnRequest) -> tuple[ColumnHead, ColumnHead]:
     """Heads of the time column and of the values."""
     found = meant(wanted.time, header), meant(wanted.column, header)
     names = (("time", wanted.time, found[0]), ("column", wanted.column, found[1]))
@@ -198,41 +198,41 @@ def _heads(header: list[str], wanted: Wanted) -> tuple[Head, Head]:
 
 
 def _name_fault(
-    header: list[str], quantity: str, name: str, found: list[Head], asked: bool, wanted: Wanted
+    header: list[str], quantity: str, name: str, found: list[ColumnHead], asked: bool, wanted: ColumnRequest
 ) -> tuple[str, str, str]:
-    path, texts = shown(wanted.path), list(dict.fromkeys(head.text for head in found))
+    path, texts = quote(wanted.path), list(dict.fromkeys(head.text for head in found))
     if len(texts) > 1:
-        return quantity, f"{path} has {len(found)} columns {shown(name)}", f"name one of them: {listed(texts)}"
+        return quantity, f"{path} has {len(found)} columns {quote(name)}", f"name one of them: {listed(texts)}"
     if found:
-        return quantity, f"{path} has {len(found)} columns {shown(name)}", "give every column a different name"
+        return quantity, f"{path} has {len(found)} columns {quote(name)}", "give every column a different name"
     remedy = "the first line names the columns, with commas between them"
     if asked:
         hint = near(name, header) or near(split(name)[0], [split(head)[0] for head in header])
         remedy = f"the columns are {listed(header)}{hint}"
-    return quantity, f"{path} has no column {shown(name)}", remedy
+    return quantity, f"{path} has no column {quote(name)}", remedy
 
 
-def _scales(time: Head, column: Head, wanted: Wanted) -> tuple[Scale, Scale]:
+def _scales(time: ColumnHead, column: ColumnHead, wanted: ColumnRequest) -> tuple[Scale, Scale]:
     """What puts times and values into SI, by the units of their heads; a scale that repeats the unit is refused."""
     scales, faults = [], []
     for quantity, head, units in (("time", time, ("s",)), ("column", column, ())):
         try:
             scales.append(head.scale(units))
         except QuantityError as bad:
-            fault = f"column {shown(head.text)} of {shown(wanted.path)} {bad.message}"
+            fault = f"column {quote(head.text)} of {quote(wanted.path)} {bad.message}"
             faults.append((quantity, fault, bad.remedy))
     if faults:
         raise FileError(faults)
     factor, zero = scales[1]
     if factor != 1.0 and isclose(factor, wanted.scale):
-        fault = f"repeats the unit of column {shown(column.text)} of {shown(wanted.path)}"
+        fault = f"repeats the unit of column {quote(column.text)} of {quote(wanted.path)}"
         raise FileError([("scale", fault, "remove scale: the values are already converted by the unit of the column")])
     return scales[0], Scale(factor * wanted.scale, zero * wanted.scale)
 
 
-def in_si(table: Array, heads: tuple[Head, Head], wanted: Wanted) -> Values:
+def in_si(table: Array, heads: tuple[ColumnHead, ColumnHead], wanted: ColumnRequest) -> ColumnValues:
     """Times and values of another format, by the units of their heads."""
-    return Values(_scaled(table, _scales(*heads, wanted), wanted), heads[1])
+    return ColumnValues(_scaled(table, _scales(*heads, wanted), wanted), heads[1])
 
 
 def names_of(path: Path) -> list[str]:
@@ -255,7 +255,7 @@ def _at_once(lines: Iterator[list[str]], places: tuple[int, int]) -> Array | Non
     return table if sound else None
 
 
-def _by_cells(lines: Iterator[list[str]], header: list[str], places: tuple[int, int], wanted: Wanted) -> Array:
+def _by_cells(lines: Iterator[list[str]], header: list[str], places: tuple[int, int], wanted: ColumnRequest) -> Array:
     """Rows one after another, with the line of each; the first few mistakes are named."""
     numbers, kept, faults = array("d"), array("q"), list[tuple[str, str, str]]()
     for line in lines:
@@ -265,14 +265,14 @@ def _by_cells(lines: Iterator[list[str]], header: list[str], places: tuple[int, 
             numbers.extend(pair)
             kept.append(number)
             continue
-        faults += _line_faults(line, header, places, f"line {number} of {shown(wanted.path)}")
+        faults += _line_faults(line, header, places, f"line {number} of {quote(wanted.path)}")
         if len(faults) >= MOST_FAULTS:
             break
     table = np.array(numbers).reshape(-1, 2)
     if not faults and not len(table):
         raise wanted.error("path", "has no row of numbers", "give at least one row below the header")
     for place in np.flatnonzero(np.diff(table[:, 0]) < 0.0)[:MOST_FAULTS] if not faults else ():
-        where = f"line {kept[place + 1]} of {shown(wanted.path)}"
+        where = f"line {kept[place + 1]} of {quote(wanted.path)}"
         faults.append(("time", f"{where}: its time is before that of line {kept[place]}", "sort the file by time"))
     if faults:
         raise FileError(faults[:MOST_FAULTS])
@@ -305,5 +305,5 @@ def _line_faults(
         cell = cells[place] if place < len(cells) else ""
         if _pair([cell], 1, (0, 0)) is None:
             fault = "is not a finite number" if cell else "is empty, not a finite number"
-            message = f"{where}: the cell in column {shown(header[place])} {fault}"
+            message = f"{where}: the cell in column {quote(header[place])} {fault}"
             yield quantity, message, "write a number with a decimal point"

@@ -14,7 +14,7 @@ BARE = ("", "-")
 
 
 @dataclass(frozen=True)
-class Head:
+class ColumnHead:
     """A column: its whole head in the file, and its unit, empty where none is given."""
 
     text: str
@@ -45,7 +45,7 @@ def split(head: str) -> tuple[str, str]:
     return (match[1], "" if match[2].strip() in BARE else match[2]) if match else (head, "")
 
 
-def meant(wanted: str, known: list[str]) -> list[Head]:
+def meant(wanted: str, known: list[str]) -> list[ColumnHead]:
     """The columns that a name may mean: the one of that very head, else those of that name.
 
     A name without a unit means a head with one, and a unit that is given with a name counts where the head has none.
@@ -53,4 +53,4 @@ def meant(wanted: str, known: list[str]) -> list[Head]:
     name, unit = split(wanted)
     found = [head for head in known if head == wanted]
     found = found or [head for head in known if split(head)[0] == name and "" in (unit, split(head)[1])]
-    return [Head(head, split(head)[1] or unit) for head in found]
+    return [ColumnHead(head, split(head)[1] or unit) for head in found]

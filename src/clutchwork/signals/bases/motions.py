@@ -17,7 +17,7 @@ ROUND_OFF = 1e-9
 
 
 class SignalError(ValueError):
-    """A signal that no exact pieces follow from: what is wrong with it, and the remedy."""
+    """A signal without an exact piecewise form: what is wrong with it, and the remedy."""
 
     def __init__(self, message: str, remedy: str) -> None:
         super().__init__(message)

@@ -20,7 +20,7 @@ MOST_BYTES = 1 << 20
 
 
 @dataclass(frozen=True)
-class Sheet:
+class NumericSheet:
     """The columns of a file whose cells are all finite numbers."""
 
     header: list[str]
@@ -38,7 +38,7 @@ class Sheet:
         return self._plain[time]
 
 
-_SHEETS: ContextVar[dict[str, Sheet] | None] = ContextVar("sheets", default=None)
+_SHEETS: ContextVar[dict[str, NumericSheet] | None] = ContextVar("sheets", default=None)
 
 
 @contextmanager
@@ -51,12 +51,12 @@ def one_reading() -> Iterator[None]:
         _SHEETS.reset(token)
 
 
-def known(where: str) -> Sheet | None:
+def known(where: str) -> NumericSheet | None:
     """The sheet of the file at a path that was read before."""
     return (_SHEETS.get() or {}).get(where)
 
 
-def keep(where: str, size: int, header: list[str], lines: Iterator[list[str]]) -> Sheet | None:
+def keep(where: str, size: int, header: list[str], lines: Iterator[list[str]]) -> NumericSheet | None:
     """The sheet of a file of a size, kept for the next column; None where it has other cells, or nobody reads more."""
     sheets = _SHEETS.get()
     if sheets is None or size > MOST_BYTES:
@@ -68,5 +68,5 @@ def keep(where: str, size: int, header: list[str], lines: Iterator[list[str]]) -
         return None
     if not len(table) or not np.all(np.isfinite(table)):
         return None
-    made = sheets[where] = Sheet(header, table)
+    made = sheets[where] = NumericSheet(header, table)
     return made

@@ -9,7 +9,7 @@ import numpy as np
 
 from clutchwork.results.channels import TORQUE
 from clutchwork.results.hints.hint import Hint, shown
-from clutchwork.results.hints.look import Span
+from clutchwork.results.hints.look import RowSpan
 from clutchwork.results.hints.registry import run_rule
 
 if TYPE_CHECKING:
@@ -20,7 +20,7 @@ NAME = "breaks away at the start"
 
 @run_rule(NAME)
 def breaks_away_at_the_start(look: Look) -> Iterator[Hint]:
-    """A contact that is said to start locked and breaks away in the first instant."""
+    """A contact that is set to start locked and breaks away in the first instant."""
     first = int(np.searchsorted(look.time, look.begin, "right")) - 1
     if first < 0:
         return
@@ -29,9 +29,9 @@ def breaks_away_at_the_start(look: Look) -> Iterator[Hint]:
             continue
         unit, begin = TORQUE[branch.domain], look.begin
         capacity = float(look.part("contact_capacity")[first, contact])
-        needed = abs(look.holding(contact, Span(first, first))) if _moves(look, first, contact) else 0.0
+        needed = abs(look.holding(contact, RowSpan(first, first))) if _moves(look, first, contact) else 0.0
         message = (
-            f"is said to start locked and breaks away at {begin:.4g} s: it takes {shown(needed, unit)} to hold,"
+            f"is set to start locked but breaks away at {begin:.4g} s: holding takes {shown(needed, unit)},"
             f" its capacity there is {shown(capacity, unit)}"
         )
         remedy = "press it harder at the start, lower the load, or let it start open"

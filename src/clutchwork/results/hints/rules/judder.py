@@ -16,7 +16,7 @@ from clutchwork.results.hints.registry import run_rule
 
 if TYPE_CHECKING:
     from clutchwork.assembly.wiring import Branch
-    from clutchwork.results.hints.look import Look, Span
+    from clutchwork.results.hints.look import Look, RowSpan
 
 NAME = "judder"
 # growth of a small vibration over a stretch of slipping that is seen
@@ -47,11 +47,11 @@ def judder(look: Look) -> Iterator[Hint]:
                 yield from found[:1]
 
 
-def _slipping(look: Look, contact: int) -> list[Span]:
+def _slipping(look: Look, contact: int) -> list[RowSpan]:
     return look.spans(look.closed[:, contact] & ~look.locked[:, contact])
 
 
-def _growing(look: Look, contact: int, branch: Branch, span: Span) -> Iterator[Hint]:
+def _growing(look: Look, contact: int, branch: Branch, span: RowSpan) -> Iterator[Hint]:
     begin, end = float(look.time[span.first]), float(look.time[span.last])
     place = _falling(look, contact, branch, span)
     root = look.motion.vibration(contact, place.slope, place.locked)
@@ -59,7 +59,7 @@ def _growing(look: Look, contact: int, branch: Branch, span: Span) -> Iterator[H
         yield _hint(look, contact, branch, (begin, end), place, root)
 
 
-def _falling(look: Look, contact: int, branch: Branch, span: Span) -> Falling:
+def _falling(look: Look, contact: int, branch: Branch, span: RowSpan) -> Falling:
     """At the mean slip of a stretch, with the mean load."""
     rows, law = slice(span.first, span.last + 1), branch.component.friction
     slip = look.mean(span, np.abs(look.slip[rows, contact]))

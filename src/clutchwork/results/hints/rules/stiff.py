@@ -84,7 +84,7 @@ def _bristles(look: Look) -> Iterator[Ringing]:
 
 
 def _distance(look: Look, contact: int) -> float:
-    """How far apart slipping brings the sides of a contact."""
+    """Largest relative displacement of the two sides of a contact by slip."""
     slip = look.slip[:, contact]
     return float(np.ptp(np.cumsum(0.5 * (slip[1:] + slip[:-1]) * np.diff(look.time)))) if len(slip) > 1 else 0.0
 

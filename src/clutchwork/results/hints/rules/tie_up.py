@@ -20,7 +20,7 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from clutchwork.assembly.system import System
-    from clutchwork.results.hints.look import Look, Span
+    from clutchwork.results.hints.look import Look, RowSpan
 
     Shifts = Callable[[], frozenset[str]]
     Pair = tuple[int, int]
@@ -88,7 +88,7 @@ def _names(look: Look, pair: Pair) -> frozenset[str]:
     return frozenset(look.contacts[k].name for k in pair)
 
 
-def _hint(look: Look, pair: Pair, spans: list[Span], total: float) -> Hint:
+def _hint(look: Look, pair: Pair, spans: list[RowSpan], total: float) -> Hint:
     begin, end = float(look.time[spans[0].first]), float(look.time[spans[-1].last])
     length = sum(float(look.time[span.last] - look.time[span.first]) for span in spans)
     heat = sum(float(np.sum(look.heat[span.last, pair] - look.heat[span.first, pair])) for span in spans)

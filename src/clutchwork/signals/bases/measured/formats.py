@@ -8,8 +8,8 @@ from importlib import import_module
 from pathlib import Path
 
 from clutchwork.base.errors import FileError
+from clutchwork.base.quote import quote
 from clutchwork.base.regular import open_regular
-from clutchwork.base.shown import shown
 from clutchwork.signals.bases.measured.series import Series
 
 # other programs write large files, of which a part is read
@@ -55,5 +55,5 @@ def opened(path: Path, form: str, given: str) -> Iterator[list[Series]]:
         raise
     # libraries raise whatever they stumble over, in words that tell what is in the file
     except Exception:
-        message = f"{shown(given)} cannot be read as {WORDS[form]}: it is damaged, or has another format"
-        raise FileError([("path", message, "write it once more, or give a CSV file")]) from None
+        message = f"{quote(given)} cannot be read as {WORDS[form]}: it is damaged, or has another format"
+        raise FileError([("path", message, "write the file again, or give a CSV file")]) from None

@@ -10,9 +10,9 @@ from typing import overload
 from clutchwork.base.classes import dataclass
 from clutchwork.base.errors import FileError
 from clutchwork.base.paths import path_of
+from clutchwork.base.plural import columns
+from clutchwork.base.quote import quote
 from clutchwork.base.regular import open_regular, reason
-from clutchwork.base.shown import shown
-from clutchwork.base.text import columns
 from clutchwork.declare.calls import explained
 from clutchwork.signals.bases.column_file import MOST_BYTES, as_text
 from clutchwork.signals.bases.column_heads import split
@@ -21,7 +21,7 @@ from clutchwork.signals.bases.semicolons import with_commas
 
 
 @dataclass(frozen=True)
-class Listed:
+class FileColumn:
     """One column, channel or variable of a file."""
 
     name: str
@@ -32,23 +32,23 @@ class Listed:
     aliases: tuple[str, ...] = ()  # shorter names that find it too
 
 
-class FileColumns(Sequence[Listed]):
+class FileColumns(Sequence[FileColumn]):
     """What a file holds, in its order; print it to read it."""
 
-    def __init__(self, found: Sequence[Listed]) -> None:
+    def __init__(self, found: Sequence[FileColumn]) -> None:
         self._found = tuple(found)
 
     @overload
-    def __getitem__(self, index: int) -> Listed: ...
+    def __getitem__(self, index: int) -> FileColumn: ...
     @overload
     def __getitem__(self, index: slice) -> FileColumns: ...
-    def __getitem__(self, index: int | slice) -> Listed | FileColumns:
+    def __getitem__(self, index: int | slice) -> FileColumn | FileColumns:
         return FileColumns(self._found[index]) if isinstance(index, slice) else self._found[index]
 
     def __len__(self) -> int:
         return len(self._found)
 
-    def __iter__(self) -> Iterator[Listed]:
+    def __iter__(self) -> Iterator[FileColumn]:
         return iter(self._found)
 
     @property
@@ -76,19 +76,19 @@ def read_columns(path: str | Path) -> FileColumns:
         if form:
             with opened(where, form, told) as found:
                 return FileColumns(
-                    [Listed(one.name, one.unit, one.samples, one.group, one.is_text, one.aliases) for one in found]
+                    [FileColumn(one.name, one.unit, one.samples, one.group, one.is_text, one.aliases) for one in found]
                 )
         return FileColumns(_of_csv(where))
     except FileNotFoundError:
-        raise FileError([("path", f"{shown(told)} does not exist", "check the path")]) from None
+        raise FileError([("path", f"{quote(told)} does not exist", "check the path")]) from None
     except (OSError, UnicodeDecodeError, csv.Error) as error:
         why = reason(error) if isinstance(error, OSError) else "it is not UTF-8 text"
-        raise FileError([("path", f"{shown(told)} cannot be read: {why}", "give a file of measurements")]) from None
+        raise FileError([("path", f"{quote(told)} cannot be read: {why}", "give a file of measurements")]) from None
 
 
-def _of_csv(path: Path) -> list[Listed]:
+def _of_csv(path: Path) -> list[FileColumn]:
     with open_regular(path, MOST_BYTES) as file, with_commas(file) as plain, as_text(plain) as text:
         lines = csv.reader(text)
         heads = [split(head.strip()) for head in next(lines, [])]
         samples = sum(1 for line in lines if any(line))
-    return [Listed(name, unit, samples, "", is_text=False) for name, unit in heads]
+    return [FileColumn(name, unit, samples, "", is_text=False) for name, unit in heads]

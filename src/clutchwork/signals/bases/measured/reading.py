@@ -8,17 +8,17 @@ from pathlib import Path
 import numpy as np
 
 from clutchwork.base.errors import FileError, near
-from clutchwork.base.shown import listed, shown
+from clutchwork.base.quote import listed, quote
 from clutchwork.signals.bases import column_file, sheets
-from clutchwork.signals.bases.column_file import MOST_FAULTS, MOST_LINES, Values, Wanted
-from clutchwork.signals.bases.column_heads import Head
+from clutchwork.signals.bases.column_file import MOST_FAULTS, MOST_LINES, ColumnRequest, ColumnValues
+from clutchwork.signals.bases.column_heads import ColumnHead
 from clutchwork.signals.bases.measured.formats import format_of, opened
 from clutchwork.signals.bases.measured.series import Array, Clock, Series
 
 Faults = list[tuple[str, str, str]]
 
 
-def read(where: str, wanted: Wanted) -> Values:
+def read(where: str, wanted: ColumnRequest) -> ColumnValues:
     """The column of the file at a path; FileError names what is wrong with the file, up to a few mistakes."""
     try:
         # what was read as a sheet is a CSV file
@@ -37,20 +37,20 @@ def read(where: str, wanted: Wanted) -> Values:
     except ImportError as missing:
         raise FileError([("path", str(missing), "")]) from None
     _refuse_lengths(clock, values, wanted)
-    heads = Head(clock.name, clock.unit), Head(one.name, one.unit)
+    heads = ColumnHead(clock.name, clock.unit), ColumnHead(one.name, one.unit)
     faults = list(_faults(one.name, clock, values, invalid, wanted))
     if faults:
         raise FileError(faults[:MOST_FAULTS])
     return column_file.in_si(np.column_stack([clock.values, values]), heads, wanted)
 
 
-def pick(found: list[Series], wanted: Wanted) -> Series:
+def pick(found: list[Series], wanted: ColumnRequest) -> Series:
     """The series that is meant."""
     groups = list(dict.fromkeys(one.group for one in found if one.group))
     if wanted.group and wanted.group not in groups:
         raise wanted.error(
             "group",
-            f"has no group {shown(wanted.group)}",
+            f"has no group {quote(wanted.group)}",
             f"the groups are {listed(groups)}{near(wanted.group, groups)}",
         )
     known = [one for one in found if wanted.group in ("", one.group)]
@@ -59,11 +59,11 @@ def pick(found: list[Series], wanted: Wanted) -> Series:
     if not meant:
         names = list(dict.fromkeys(one.name for one in known))
         hint = near(wanted.column, [*names, *(alias for one in known for alias in one.aliases)])
-        raise wanted.error("column", f"has no column {shown(wanted.column)}", f"the columns are {listed(names)}{hint}")
+        raise wanted.error("column", f"has no column {quote(wanted.column)}", f"the columns are {listed(names)}{hint}")
     if len(meant) > 1:
-        raise wanted.error("column", f"has {len(meant)} columns {shown(wanted.column)}", _choice(meant))
+        raise wanted.error("column", f"has {len(meant)} columns {quote(wanted.column)}", _choice(meant))
     if meant[0].is_text:
-        raise wanted.error("column", f"has words in column {shown(wanted.column)}, no numbers", "choose another column")
+        raise wanted.error("column", f"has words in column {quote(wanted.column)}, no numbers", "choose another column")
     return meant[0]
 
 
@@ -76,7 +76,7 @@ def _choice(meant: list[Series]) -> str:
     return "give every column of the file a different name"
 
 
-def _clock(one: Series, found: list[Series], wanted: Wanted) -> Clock:
+def _clock(one: Series, found: list[Series], wanted: ColumnRequest) -> Clock:
     clock = one.clock(wanted.time)
     named = [
         other for other in found if other.is_called(wanted.time) and other.group == one.group and not other.is_text
@@ -88,27 +88,27 @@ def _clock(one: Series, found: list[Series], wanted: Wanted) -> Clock:
         others = [name for name in alike if name != one.name]
         fellows = f"columns of as many samples are {listed(others)}{near(wanted.time, others)}" if others else ""
         remedy = f"name the one with the times: time=...; {fellows}" if fellows else "write the times into the file"
-        raise wanted.error("time", f"has no times {shown(wanted.time)} of column {shown(one.name)}", remedy)
+        raise wanted.error("time", f"has no times {quote(wanted.time)} of column {quote(one.name)}", remedy)
     return clock
 
 
-def _refuse_lengths(clock: Clock, values: Array, wanted: Wanted) -> None:
+def _refuse_lengths(clock: Clock, values: Array, wanted: ColumnRequest) -> None:
     if values.ndim != 1 or values.dtype.kind != "f":
-        raise wanted.error("column", f"has no numbers in column {shown(wanted.column)}", "choose another column")
+        raise wanted.error("column", f"has no numbers in column {quote(wanted.column)}", "choose another column")
     if len(values) != len(clock.values):
-        told = f"has {len(values)} values in column {shown(wanted.column)} and {len(clock.values)} times"
+        told = f"has {len(values)} values in column {quote(wanted.column)} and {len(clock.values)} times"
         raise wanted.error("column", told, "give one time for each value")
     if not len(values):
-        raise wanted.error("column", f"has no sample in column {shown(wanted.column)}", "choose another column")
+        raise wanted.error("column", f"has no sample in column {quote(wanted.column)}", "choose another column")
     if len(values) > MOST_LINES:
         raise wanted.error("path", f"has more than {MOST_LINES} samples", "give fewer samples")
 
 
 def _faults(
-    name: str, clock: Clock, values: Array, invalid: Array | None, wanted: Wanted
+    name: str, clock: Clock, values: Array, invalid: Array | None, wanted: ColumnRequest
 ) -> Iterator[tuple[str, str, str]]:
     """Samples that cannot be used, by their times in the unit of the file."""
-    path, times, unit = shown(wanted.path), clock.values, clock.unit or "s"
+    path, times, unit = quote(wanted.path), clock.values, clock.unit or "s"
     for place in np.flatnonzero(~np.isfinite(times))[:MOST_FAULTS]:
         yield "time", f"{path}: the time of sample {place} is not a finite number", "remove this sample"
     for place in np.flatnonzero(np.diff(times) < 0.0)[:MOST_FAULTS]:
@@ -116,8 +116,8 @@ def _faults(
         yield "time", told, "sort the samples by time"
     marked = np.zeros(len(values), bool) if invalid is None else np.asarray(invalid, bool)
     for place in np.flatnonzero(marked)[:MOST_FAULTS]:
-        told = f"{path}: the sample of {shown(name)} at {times[place]:.9g} {unit} is marked as invalid"
+        told = f"{path}: the sample of {quote(name)} at {times[place]:.9g} {unit} is marked as invalid"
         yield "column", told, "cut it out, or replace it"
     for place in np.flatnonzero(~np.isfinite(values))[:MOST_FAULTS]:
-        told = f"{path}: the sample of {shown(name)} at {times[place]:.9g} {unit} is not a finite number"
+        told = f"{path}: the sample of {quote(name)} at {times[place]:.9g} {unit} is not a finite number"
         yield "column", told, "cut it out, or replace it"

@@ -30,8 +30,8 @@ TABLES = ("named", "elements", "data")
 OPEN = "_has_units"
 
 
-class Wanted(NamedTuple):
-    """What a number is wanted in: the unit of SI, further ones, whether it is a difference; no unit: as it is."""
+class TargetUnit(NamedTuple):
+    """Unit that a number is converted to: the SI unit, others that are accepted, whether it is a difference."""
 
     unit: str
     others: tuple[str, ...] = ()
@@ -39,7 +39,7 @@ class Wanted(NamedTuple):
     scale: Scale = PLAIN  # of plain numbers, in a model file
 
     def number(self, value: Any) -> Any:
-        """The number in SI; a value that is none, or does not fit, as it is."""
+        """Converts to SI; returns anything unconvertible unchanged."""
         if not has_unit(value):
             return value if self.scale is PLAIN else times(value, self.scale)
         if self.unit == "*" or is_array(value):
@@ -50,23 +50,23 @@ class Wanted(NamedTuple):
             return value
 
 
-def field_in_si(value: Any, spec: Spec, driven: Wanted | None = None) -> Any:
+def field_in_si(value: Any, spec: Spec, driven: TargetUnit | None = None) -> Any:
     """The value of a field in SI, the same object where nothing of it has a unit.
 
     Parameters: driven, for a field of a signal in the unit of what it drives: that unit.
     """
     star = spec.unit == "*"
-    wanted = Wanted(spec.unit, spec.units, spec.difference)
+    wanted = TargetUnit(spec.unit, spec.units, spec.difference)
     if star and driven is not None:
         wanted = driven._replace(difference=spec.difference)
     if spec.what == "curve":
-        return points_in_si(value, Wanted(spec.unit_x, spec.units_x), wanted, constant=spec.constant)
+        return points_in_si(value, TargetUnit(spec.unit_x, spec.units_x), wanted, constant=spec.constant)
     if spec.what == "numbers":
         return numbers_in_si(value, wanted)
     return wanted.number(value)
 
 
-def points_in_si(value: Any, x: Wanted, y: Wanted, *, constant: bool = False) -> Any:
+def points_in_si(value: Any, x: TargetUnit, y: TargetUnit, *, constant: bool = False) -> Any:
     """Pairs with both parts in SI, or with `constant` one number; what is neither stays for the checks."""
     if has_unit(value) or isinstance(value, int | float):
         return y.number(value) if constant else value
@@ -80,7 +80,7 @@ def points_in_si(value: Any, x: Wanted, y: Wanted, *, constant: bool = False) ->
     return value if same else tuple(made)
 
 
-def numbers_in_si(value: Any, wanted: Wanted) -> Any:
+def numbers_in_si(value: Any, wanted: TargetUnit) -> Any:
     """Numbers, or rows of them, in SI; an array of pint too."""
     if pints.is_quantity(value):
         try:
@@ -201,7 +201,7 @@ def table_in_si(value: Any, spec: Spec) -> Any:
         return value.__fspath__()
     if spec.what != "named" or not hasattr(value, "items"):
         return frozen(value)
-    wanted = Wanted(spec.unit, spec.units, spec.difference)
+    wanted = TargetUnit(spec.unit, spec.units, spec.difference)
     return Frozen({name: wanted.number(number) for name, number in value.items()})
 
 
@@ -223,7 +223,7 @@ def driving(signal: Any, unit: str, others: tuple[str, ...] = ()) -> Any:
     """A signal whose values with units are in that of what it drives; anything else as it is."""
     if OPEN not in getattr(signal, "__dict__", ()):
         return signal
-    driven = Wanted(unit, others)
+    driven = TargetUnit(unit, others)
     cls: Any = type(signal)
     values = vars(signal)
     new = {name: field_in_si(values[name], spec, driven) for name, spec in _specs(cls) if spec.unit == "*"}

@@ -14,7 +14,7 @@ from tests.support import random_drivelines
 
 import clutchwork as cw
 from clutchwork.assembly.wiring import wiring
-from clutchwork.base.kept import KEPT, kept
+from clutchwork.base.memoize import KEPT, memoize
 from clutchwork.results.channels import channels
 
 
@@ -99,7 +99,7 @@ class Thing:
 def test_further_arguments_are_told_apart() -> None:
     calls = []
 
-    @kept
+    @memoize
     def found(thing: Thing, number: int) -> list[int]:
         calls.append(number)
         return [number]

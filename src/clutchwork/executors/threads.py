@@ -9,7 +9,7 @@ from threading import Event
 from typing import Any
 
 from clutchwork.base.classes import dataclass
-from clutchwork.engines.engine import AHEAD, Stopped, Task
+from clutchwork.executors.executor import AHEAD, Stopped, Task
 
 
 @dataclass(frozen=True)

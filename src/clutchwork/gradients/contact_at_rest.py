@@ -8,12 +8,12 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
-from clutchwork.base.kept import kept
+from clutchwork.base.memoize import memoize
 from clutchwork.declare.schema import inputs
 
 if TYPE_CHECKING:
     from clutchwork.assembly.system import System
-    from clutchwork.gradients.chart import Chart, Slopes
+    from clutchwork.gradients.word_map import Chart, Slopes
 
 Array = NDArray[np.float64]
 Mask = NDArray[np.bool_]
@@ -43,7 +43,7 @@ def unpressed(
                 yield since, f"{what}, where a little more of {free} presses and a little less does not", moved
 
 
-@kept
+@memoize
 def pressing(system: System) -> tuple[int, ...]:
     """Numbers of the signals that press contacts."""
     known = {item.name: number for number, item in enumerate(system.inputs)}

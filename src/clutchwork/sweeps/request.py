@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 from clutchwork.assembly.system import System
 from clutchwork.base.errors import ModelError, UseError
-from clutchwork.base.shown import shown
+from clutchwork.base.quote import quote
 from clutchwork.declare.options import Options
 from clutchwork.run.settings import merged, refuse_endless
 from clutchwork.sweeps.asking import ROWS
@@ -23,7 +23,7 @@ if TYPE_CHECKING:
 
     from clutchwork.run.simulation import Assembles
     from clutchwork.sweeps.outputs import Output
-    from clutchwork.sweeps.variants import Source
+    from clutchwork.sweeps.variants import VariantSource
 
 # so many values of a name are all looked at before the first run
 MOST_LOOKED_AT = 64
@@ -34,7 +34,7 @@ class Order:
     """What is run and kept, and where the variants come from."""
 
     system: System
-    source: Source
+    source: VariantSource
     outputs: Mapping[str, Output]
     t_end: float  # s
     options: Options
@@ -68,7 +68,7 @@ def ordered(
 ) -> Order:
     """What a call asks for; an error names what is wrong with it."""
     if options is not None and not isinstance(options, Options):
-        raise UseError(call, [f"options is {shown(options)}: it must be cw.Options(...)"])
+        raise UseError(call, [f"options is {quote(options)}: it must be cw.Options(...)"])
     system, wanted = _system(call, model), asked(outputs)
     source = given(vary) if system.source is None else given(vary).in_si(system.source)
     chosen = {**changes} if t_end is None else {**changes, "t_end": t_end}
@@ -89,7 +89,7 @@ def _system(call: str, model: Assembles | System) -> System:
     if isinstance(model, System):
         return model
     if not hasattr(model, "assemble"):
-        raise UseError(call, [f"{shown(model)} is not a model; give a Driveline or a System"])
+        raise UseError(call, [f"{quote(model)} is not a model; give a Driveline or a System"])
     return model.assemble()
 
 
@@ -98,7 +98,7 @@ def threads_of(threads: object, call: str = "sweep") -> int:
     if threads is None:
         return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
     if not isinstance(threads, int) or isinstance(threads, bool) or threads < 1:
-        raise UseError(call, [f"threads is {shown(threads)}: give a whole number from 1 on"])
+        raise UseError(call, [f"threads is {quote(threads)}: give a whole number of at least 1"])
     return threads
 
 

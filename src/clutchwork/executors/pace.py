@@ -1,4 +1,4 @@
-"""How many variants go into one chunk: enough that what the engine itself costs does not show."""
+"""How many variants go into one chunk: enough that what the executor itself costs does not show."""
 
 from __future__ import annotations
 
@@ -6,9 +6,9 @@ import time
 from collections.abc import Callable
 from typing import Any
 
-from clutchwork.engines.engine import Alive, Engine
+from clutchwork.executors.executor import Alive, Executor
 
-# a chunk takes so long, and so many times what the engine needs for it
+# a chunk takes so long, and so many times what the executor needs for it
 SECONDS = 2.0
 SHARE = 200.0
 # chunks of each worker, so that none waits long for the last
@@ -19,16 +19,16 @@ MOST = 65536
 MEASURED = 0.2
 
 
-def chunk_size(engine: Engine, job: Any, count: int, run: Callable[[int], object]) -> int:
+def chunk_size(executor: Executor, job: Any, count: int, run: Callable[[int], object]) -> int:
     """Variants of a chunk.
 
     Parameters: count, variants in all; run, a function that runs so many of them.
     """
-    fair = max(1, -(-count // (FAIR * engine.workers)))
+    fair = max(1, -(-count // (FAIR * executor.workers)))
     if fair == 1:
         return 1
     taken = seconds_of_one(run, fair)
-    wanted = max(SECONDS, SHARE * cost(engine, job))
+    wanted = max(SECONDS, SHARE * cost(executor, job))
     return max(1, min(fair, MOST, round(wanted / taken)))
 
 
@@ -44,14 +44,14 @@ def seconds_of_one(run: Callable[[int], object], count: int) -> float:
         number = min(count, 2 * number)
 
 
-def cost(engine: Engine, job: Any) -> float:
-    """What the engine needs for a chunk, beside its runs: seconds of one worker."""
+def cost(executor: Executor, job: Any) -> float:
+    """What the executor needs for a chunk, beside its runs: seconds of one worker."""
     rounds = 2
-    for _ in engine.run(_nothing, job, range(rounds * engine.workers)):
+    for _ in executor.run(_nothing, job, range(rounds * executor.workers)):
         # the first calls start processes and import what they need
         pass
     begun = time.perf_counter()
-    for _ in engine.run(_nothing, job, range(rounds * engine.workers)):
+    for _ in executor.run(_nothing, job, range(rounds * executor.workers)):
         pass
     return (time.perf_counter() - begun) / rounds
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from clutchwork.declare.quantity import within
 from clutchwork.declare.schema import Role, Spec
-from clutchwork.declare.speech import kinds_of
+from clutchwork.declare.wording import kinds_of
 
 
 def wanted(spec: Spec, unit: str) -> str:

@@ -9,11 +9,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from clutchwork.calibration.outcome import FEASIBLE
-from clutchwork.calibration.rows import Block, Row
+from clutchwork.calibration.rows import ConstraintBlock, Row
 from clutchwork.calibration.scaled import Samples, Scaled
 
 if TYPE_CHECKING:
-    from clutchwork.calibration.evaluate import Point
+    from clutchwork.calibration.evaluate import Evaluation
 
 Array = NDArray[np.float64]
 # limits count as held with so much to spare, in shares of their scale
@@ -31,7 +31,7 @@ class Restoring(Scaled):
         self.goal_scale = 1.0
         self.begin(self.start, self.reach)
 
-    def lifted(self, y: Array, found: Point) -> Array:
+    def lifted(self, y: Array, found: Evaluation) -> Array:
         """The same unknowns, and by how much the worst limit is broken."""
         if not found.is_fine:
             return y.copy()
@@ -58,15 +58,15 @@ class Restoring(Scaled):
         return [one._replace(sign=sign) for one in limits for sign in ((1.0, -1.0) if one.sign == 0.0 else (one.sign,))]
 
     @cached_property
-    def _block(self) -> Block:
-        return Block(self.rows)
+    def _block(self) -> ConstraintBlock:
+        return ConstraintBlock(self.rows)
 
-    def values_at(self, found: Point, y: Array, block: Block) -> Array:
+    def values_at(self, found: Evaluation, y: Array, block: ConstraintBlock) -> Array:
         """What must not be negative: room up to the bounds, and what may be broken."""
         made: Array = super().values_at(found, y, block) + y[-1]
         return made
 
-    def slopes(self, y: Array, block: Block) -> Array:
+    def slopes(self, y: Array, block: ConstraintBlock) -> Array:
         """Their derivatives."""
         made = super().slopes(y, block)
         made[:, -1] = 1.0

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 from clutchwork.base.errors import Problem
 from clutchwork.declare.rational import Row, exact, plus
 from clutchwork.declare.schema import Role
-from clutchwork.declare.speech import path_of
+from clutchwork.declare.wording import path_of
 from clutchwork.elements.bases.stop import Stop
 
 if TYPE_CHECKING:
@@ -16,7 +16,7 @@ if TYPE_CHECKING:
     from clutchwork.model.structure import Kinematics, Mechanism
 
 
-class Transmission(NamedTuple):
+class RatioConstraint(NamedTuple):
     """An element and its two rates over the nodes: first = ratio second."""
 
     component: Any
@@ -33,14 +33,14 @@ def is_transmission(component: Any) -> bool:
     return "ratio" in type(component).hooks
 
 
-def transmissions(model: Mechanism) -> list[Transmission]:
+def transmissions(model: Mechanism) -> list[RatioConstraint]:
     """All transmissions, in order."""
     found = [component for component in model.role(Role.TORQUE) if is_transmission(component)]
-    return [Transmission(component, *model.directions(component)) for component in found]
+    return [RatioConstraint(component, *model.directions(component)) for component in found]
 
 
 def followers(model: Mechanism, made: Kinematics) -> dict[int, int]:
-    """Speeds without inertia that follow from transmissions: number of the transmission -> independent node.
+    """Massless nodes whose speed a variable ratio fixes: number of the ratio -> independent node.
 
     In an order in which each one needs those before it alone.
     """
@@ -56,11 +56,11 @@ def followers(model: Mechanism, made: Kinematics) -> dict[int, int]:
             speeds.discard(speed)
 
 
-def _massless(made: Kinematics, tie: Transmission) -> set[int]:
+def _massless(made: Kinematics, tie: RatioConstraint) -> set[int]:
     return made.massless & (made.over(tie.first).keys() | made.over(tie.second).keys())
 
 
-def ordered(model: Mechanism, made: Kinematics) -> Iterator[tuple[Transmission, int | None]]:
+def ordered(model: Mechanism, made: Kinematics) -> Iterator[tuple[RatioConstraint, int | None]]:
     """The transmissions with the independent nodes that follow from them, those first."""
     all_of = transmissions(model)
     yield from ((all_of[n], node) for n, node in made.followers.items())

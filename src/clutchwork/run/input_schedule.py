@@ -11,14 +11,14 @@ from typing import Any, NamedTuple, Protocol
 import numpy as np
 
 from clutchwork.base.classes import dataclass
-from clutchwork.results.held import Held, held_of, plain_held, plain_value, value_of
+from clutchwork.results.external_settings import Held, held_of, plain_held, plain_value, value_of
 
 # by place, of a table its segments
 Numbers = tuple[tuple[int, Any], ...]
 KINDS = ("input", "release", "param", "control", "segments")
 
 
-class Course(Protocol):
+class Schedule(Protocol):
     """Stretches of a run from one instant to the next."""
 
     def stops(self, begin: float, t_end: float) -> Iterator[float]:

@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from clutchwork.base.errors import OptionError
-from clutchwork.base.shown import shown
+from clutchwork.base.quote import quote
 from clutchwork.declare.options import MOST_COUNTED, MOST_ROWS, ONE_GRID, Options, instants
 from clutchwork.declare.units import split
 
@@ -58,7 +58,7 @@ def _within(times: Any, first: float, last: float) -> Array:
     try:
         grid = np.sort(np.atleast_1d(np.array(given, dtype=float)))
     except (TypeError, ValueError):
-        raise OptionError([f"times are {shown(times)}: they must be a sequence of numbers [s]"]) from None
+        raise OptionError([f"times are {quote(times)}: they must be a sequence of numbers [s]"]) from None
     if grid.ndim != 1 or not grid.size or not np.all(np.isfinite(grid)):
         raise OptionError(["times must be a list of finite numbers [s], at least one"])
     if grid[0] < first or grid[-1] > last:

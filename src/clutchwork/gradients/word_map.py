@@ -13,12 +13,12 @@ from clutchwork.base.classes import dataclass
 from clutchwork.base.errors import ModelError
 from clutchwork.gradients.assembled import Assembled
 from clutchwork.gradients.discovery import identity, tables, together
-from clutchwork.gradients.packed import Structure
+from clutchwork.gradients.system_words import WordStructure
 from clutchwork.gradients.tables import TableWords
 
 if TYPE_CHECKING:
     from clutchwork.assembly.system import System
-    from clutchwork.gradients.parameters import Parameter
+    from clutchwork.gradients.parameters import Tunable
 
 Array = NDArray[np.float64]
 Places = NDArray[np.int64]
@@ -62,9 +62,9 @@ class Chart:
         return self.assembled.structure.layout.starts[name] // 8, self.assembled.system.arrays[name].size
 
     @classmethod
-    def of(cls, system: System, parameters: tuple[Parameter, ...], x: Array) -> Chart:
+    def of(cls, system: System, parameters: tuple[Tunable, ...], x: Array) -> Chart:
         """Look at how the words of a System, which has these values, follow from them."""
-        structure = Structure.of(system)
+        structure = WordStructure.of(system)
         found = ((n, identity(system, structure, one, float(x[n]))) for n, one in enumerate(parameters))
         scalars = {number: places for number, places in found if places is not None}
         signals = tuple(tables(system, structure, parameters))
@@ -80,8 +80,8 @@ class Chart:
     def _with(
         cls,
         system: System,
-        structure: Structure,
-        parameters: tuple[Parameter, ...],
+        structure: WordStructure,
+        parameters: tuple[Tunable, ...],
         x: Array,
         scalars: dict[int, Places],
         signals: tuple[TableWords, ...],

@@ -14,7 +14,7 @@ Ts = TypeVarTuple("Ts")
 KEPT = "_kept"
 
 
-def kept(function: Callable[[T, Unpack[Ts]], R]) -> Callable[[T, Unpack[Ts]], R]:
+def memoize(function: Callable[[T, Unpack[Ts]], R]) -> Callable[[T, Unpack[Ts]], R]:
     """Keep in a thing what a function makes of it, for each set of further arguments.
 
     Threads that ask for the first time together may each make it; all get the one that was there first.

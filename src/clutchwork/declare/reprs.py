@@ -6,9 +6,9 @@ from dataclasses import MISSING, fields
 from numbers import Real
 from typing import Any
 
-from clutchwork.base.shown import shown
-from clutchwork.declare.given import settled
+from clutchwork.base.quote import quote
 from clutchwork.declare.schema import specs
+from clutchwork.declare.to_si import settled
 
 
 def called(thing: Any) -> str:
@@ -64,7 +64,7 @@ def _of_node(thing: Any) -> tuple[Any, Any, Any]:
 
 def _line(cls: str, thing: Any, parts: list[str]) -> str:
     more = f": {', '.join(parts)}" if parts else ""
-    return f"<{cls} {shown(getattr(thing, 'name', None))}{more}>"
+    return f"<{cls} {quote(getattr(thing, 'name', None))}{more}>"
 
 
 def _is_default(value: Any, default: Any) -> bool:
@@ -79,7 +79,7 @@ def _code(value: Any) -> str:
     if callable(value) and hasattr(value, "__qualname__"):
         return str(value.__qualname__)
     name = getattr(value, "name", None)
-    return shown(name if isinstance(name, str) else value)
+    return quote(name if isinstance(name, str) else value)
 
 
 def _value(value: Any, unit: str) -> str:

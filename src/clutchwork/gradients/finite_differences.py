@@ -26,7 +26,7 @@ CENTRAL = tuple(k for k in range(-4, 5) if k)
 UPWARD = tuple(range(7))
 
 
-class Slope(NamedTuple):
+class Difference(NamedTuple):
     """A derivative, and whether the function is a straight line as far as was looked."""
 
     value: Array
@@ -41,7 +41,7 @@ class Rebuilt(Exception):  # noqa: N818, it is caught where it is raised
     """A function is another one there."""
 
 
-def slope(function: Callable[[float], Array], here: Array, scale: float, reach: float) -> Slope:
+def slope(function: Callable[[float], Array], here: Array, scale: float, reach: float) -> Difference:
     """The derivative of a function at 0, by differences over steps of the scale of its argument.
 
     Parameters: function, raises ModelError where it is not defined, so that one side is asked alone, and Rebuilt where
@@ -83,7 +83,7 @@ def _why(function: Callable[[float], Array], width: float) -> str:
     return f"the driveline jumps or has a kink here; {remedy}"
 
 
-def _tried(function: Callable[[float], Array], places: tuple[int, ...], here: Array, width: float) -> Slope | None:
+def _tried(function: Callable[[float], Array], places: tuple[int, ...], here: Array, width: float) -> Difference | None:
     try:
         values = np.array([here if k == 0 else function(k * width) for k in places])
     except (ModelError, Rebuilt):
@@ -91,7 +91,7 @@ def _tried(function: Callable[[float], Array], places: tuple[int, ...], here: Ar
     return _fitted(places, values, here, width)
 
 
-def _fitted(places: tuple[int, ...], values: Array, here: Array, width: float) -> Slope | None:
+def _fitted(places: tuple[int, ...], values: Array, here: Array, width: float) -> Difference | None:
     """The derivative from values beside one, None where two orders do not agree."""
     rises = values - here
     fine, coarse = weights(places, len(places)), weights(places, len(places) - 2)
@@ -104,7 +104,7 @@ def _fitted(places: tuple[int, ...], values: Array, here: Array, width: float) -
     if np.any(np.maximum(np.abs(value - other), apart) > ALLOWED * size + 10 * noise / width):
         return None
     line = np.outer(np.array(places) * width, value)
-    return Slope(value, bool(np.all(np.abs(rises - line) <= 1e-12 * size * width + 10 * noise)))
+    return Difference(value, bool(np.all(np.abs(rises - line) <= 1e-12 * size * width + 10 * noise)))
 
 
 @cache

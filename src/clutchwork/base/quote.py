@@ -28,14 +28,14 @@ class _Short(reprlib.Repr):
         """A table in its own order."""
         if level <= 0:
             return "{...}"
-        shown = [f"{self.repr1(key, level - 1)}: {self.repr1(x[key], level - 1)}" for key in islice(x, self.maxdict)]
-        return f"{{{', '.join([*shown, *(['...'] if len(x) > self.maxdict else [])])}}}"
+        entries = [f"{self.repr1(key, level - 1)}: {self.repr1(x[key], level - 1)}" for key in islice(x, self.maxdict)]
+        return f"{{{', '.join([*entries, *(['...'] if len(x) > self.maxdict else [])])}}}"
 
 
 _SHORT = _Short()
 
 
-def shown(value: object) -> str:
+def quote(value: object) -> str:
     """A value as Python writes it, the middle left out where it is long."""
     return shortened(_SHORT.repr(value))
 

@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from clutchwork.base.extras import need
-from clutchwork.calibration.rows import Block
+from clutchwork.calibration.rows import ConstraintBlock
 from clutchwork.calibration.scaled import Scaled
 
 Array = NDArray[np.float64]
@@ -73,7 +73,7 @@ class _Walk:
 
     def __init__(self, scaled: Scaled, y: Array, reach: float) -> None:
         self.scaled, self.reach = scaled, reach
-        self.block = Block(scaled.rows)
+        self.block = ConstraintBlock(scaled.rows)
         self._take(self._tried(y))
 
     def _take(self, tried: _Tried) -> None:

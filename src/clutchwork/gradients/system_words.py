@@ -12,10 +12,10 @@ from numpy.typing import NDArray
 from clutchwork.assembly.masses import is_mass, masses
 from clutchwork.base.classes import dataclass
 from clutchwork.base.errors import ModelWarning
-from clutchwork.base.kept import kept
+from clutchwork.base.memoize import memoize
 from clutchwork.declare.layout import FIELDS
-from clutchwork.gradients.parameters import Parameter, changes
-from clutchwork.sweeps.words import Layout
+from clutchwork.gradients.parameters import Tunable, changes
+from clutchwork.sweeps.system_words import SystemLayout
 
 if TYPE_CHECKING:
     from clutchwork.assembly.system import System
@@ -29,7 +29,7 @@ def words_of(system: System) -> Array:
     return np.frombuffer(system.to_bytes(), dtype=np.float64)
 
 
-def made(system: System, parameters: Sequence[Parameter], x: Array) -> System:
+def made(system: System, parameters: Sequence[Tunable], x: Array) -> System:
     """A System with other values; ModelError where the driveline refuses them."""
     with warnings.catch_warnings():
         # what is rarely wanted was said of the driveline
@@ -37,13 +37,13 @@ def made(system: System, parameters: Sequence[Parameter], x: Array) -> System:
         return system.changed(changes(system, parameters, x))
 
 
-def words_made(system: System, parameters: Sequence[Parameter], x: Array) -> Array:
+def words_made(system: System, parameters: Sequence[Tunable], x: Array) -> Array:
     """The words of a System with other values, as those of `made`."""
     found = with_masses(system, parameters, x)
     return words_of(made(system, parameters, x)) if found is None else found
 
 
-def with_masses(system: System, parameters: Sequence[Parameter], x: Array) -> Array | None:
+def with_masses(system: System, parameters: Sequence[Tunable], x: Array) -> Array | None:
     """The same where the numbers are inertias, and nothing but the mass matrix follows from them; else None."""
     known = masses(system) if parameters and all(is_mass(one.field) for one in parameters) else None
     changes = {one.field: value for one, value in zip(parameters, x.tolist(), strict=True)}
@@ -56,10 +56,10 @@ def with_masses(system: System, parameters: Sequence[Parameter], x: Array) -> Ar
     return words
 
 
-@kept
-def layout(system: System) -> Layout:
+@memoize
+def layout(system: System) -> SystemLayout:
     """Where the arrays of a System begin, found once."""
-    return Layout.of(system)
+    return SystemLayout.of(system)
 
 
 def finite(words: Array) -> Array:
@@ -68,15 +68,15 @@ def finite(words: Array) -> Array:
 
 
 @dataclass(frozen=True, eq=False)
-class Structure:
+class WordStructure:
     """The words of a System, which of them are numbers, and which say how it is built."""
 
     words: Array
     is_number: NDArray[np.bool_]
-    layout: Layout
+    layout: SystemLayout
 
     @classmethod
-    def of(cls, system: System) -> Structure:
+    def of(cls, system: System) -> WordStructure:
         """That of a System."""
         where, words = layout(system), words_of(system)
         is_number = np.zeros(len(words), dtype=bool)

@@ -8,8 +8,8 @@ from itertools import islice
 from typing import Any
 
 from clutchwork.base.extras import need
-from clutchwork.engines.engine import AHEAD, TRIES, EngineError, Task
-from clutchwork.engines.process import called
+from clutchwork.executors.executor import AHEAD, TRIES, ExecutorError, Task
+from clutchwork.executors.process import called
 
 
 class OnDask:
@@ -32,7 +32,7 @@ class OnDask:
             return self._dask.Client(self._cluster or address, set_as_default=False)
         except (OSError, ValueError) as error:
             remedy = "check the address that the scheduler said when it began: tcp://host:8786"
-            raise EngineError(f"Dask cannot be had at {address}: {error}; {remedy}") from error
+            raise ExecutorError(f"Dask cannot be had at {address}: {error}; {remedy}") from error
 
     @property
     def workers(self) -> int:
@@ -62,7 +62,7 @@ class OnDask:
         try:
             return done.result()
         except self._dask.KilledWorker as error:
-            raise EngineError(f"workers of Dask died {TRIES} times at one chunk: {error}") from error
+            raise ExecutorError(f"workers of Dask died {TRIES} times at one chunk: {error}") from error
 
     def close(self) -> None:
         """End a cluster or a connection of our own."""

@@ -6,7 +6,7 @@ import warnings
 from typing import Any
 
 from clutchwork.base.errors import ModelWarning
-from clutchwork.engines.engine import Task, on_and_on
+from clutchwork.executors.executor import Task, on_and_on
 
 
 def called(task: Task, job: Any, piece: Any) -> Any:

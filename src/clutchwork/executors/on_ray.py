@@ -8,8 +8,8 @@ from itertools import islice
 from typing import Any
 
 from clutchwork.base.extras import need
-from clutchwork.engines.engine import AHEAD, TRIES, EngineError, Task
-from clutchwork.engines.process import called
+from clutchwork.executors.executor import AHEAD, TRIES, ExecutorError, Task
+from clutchwork.executors.process import called
 
 # of the store of a cluster of our own; results are small
 STORE = 100_000_000  # bytes
@@ -38,7 +38,7 @@ class OnRay:
         except (ConnectionError, RuntimeError, ValueError, OSError) as error:
             where = "on this machine" if address is None else f"at {address}"
             remedy = "check that it runs: ray status" if address else "look at its log below /tmp/ray"
-            raise EngineError(f"Ray cannot be had {where}: {error}; {remedy}") from error
+            raise ExecutorError(f"Ray cannot be had {where}: {error}; {remedy}") from error
 
     @property
     def workers(self) -> int:
@@ -70,7 +70,7 @@ class OnRay:
         except errors.RayTaskError as error:
             raise error.cause from None
         except (errors.WorkerCrashedError, errors.OutOfMemoryError, errors.NodeDiedError) as error:
-            raise EngineError(f"workers of Ray died {TRIES} times at one chunk: {error}") from error
+            raise ExecutorError(f"workers of Ray died {TRIES} times at one chunk: {error}") from error
 
     def close(self) -> None:
         """End a cluster or a connection of our own."""

@@ -14,7 +14,7 @@ from clutchwork.fit.intervals import Estimate, limits_at
 from clutchwork.fit.reasons import spans
 
 if TYPE_CHECKING:
-    from clutchwork.fit.search import Search, Solution
+    from clutchwork.fit.search import Residuals, Solution
 
 Array = NDArray[np.float64]
 
@@ -22,7 +22,7 @@ Array = NDArray[np.float64]
 FACTOR, SCALES = 10.0, 3.0
 
 
-def widened(search: Search, best: Solution, found: Estimate) -> Estimate:
+def widened(search: Residuals, best: Solution, found: Estimate) -> Estimate:
     """Intervals that hold what all parameters become when one that is open is moved and the others follow."""
     items, limits, why = search.unknowns.items, list(found.limits), list(found.reasons)
     for column, place in enumerate(search.unknowns.searched):
@@ -38,7 +38,7 @@ def widened(search: Search, best: Solution, found: Estimate) -> Estimate:
     return replace(found, limits=limits, reasons=why)
 
 
-def _elsewhere(search: Search, best: Solution, found: Estimate, column: int) -> Iterator[Array]:
+def _elsewhere(search: Residuals, best: Solution, found: Estimate, column: int) -> Iterator[Array]:
     """Solutions as good as the best one, with one code somewhere else."""
     far = log(FACTOR) if search.logs[column] else SCALES * float(search.scales[column])
     here, start = float(best.u[column]), float(search.unknowns.start[column])

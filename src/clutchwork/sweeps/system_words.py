@@ -33,14 +33,14 @@ class Axis:
 
 
 @dataclass(frozen=True, eq=False)
-class Layout:
+class SystemLayout:
     """Where each array of a System begins in its bytes."""
 
     system: System
     starts: dict[str, int]
 
     @classmethod
-    def of(cls, system: System) -> Layout:
+    def of(cls, system: System) -> SystemLayout:
         """The places in `System.to_bytes`."""
         starts, at = {}, 16 + 8 * len(COUNTS)
         for name, _, _, _ in FIELDS:

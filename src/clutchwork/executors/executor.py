@@ -1,4 +1,4 @@
-"""What all engines have in common: workers that call one function with one job and many pieces."""
+"""What all executors have in common: workers that call one function with one job and many pieces."""
 
 from __future__ import annotations
 
@@ -17,8 +17,8 @@ AHEAD = 1
 TRIES = 4
 
 
-class Engine(Protocol):
-    """Workers that are there until the engine is closed."""
+class Executor(Protocol):
+    """Workers that are there until the executor is closed."""
 
     @property
     def name(self) -> str:
@@ -29,7 +29,7 @@ class Engine(Protocol):
         """How many pieces are worked on at once."""
 
     def run(self, task: Task, job: Any, pieces: Iterable[Any]) -> Generator[Any, None, None]:
-        """What the task gives for each piece, as they come; a piece whose worker dies is given to another.
+        """Results of the task in the order of completion; a piece whose worker dies is run by another worker.
 
         Pieces are drawn when a worker is about to be free, so they may be many.
         """
@@ -38,7 +38,7 @@ class Engine(Protocol):
         """End what was started."""
 
 
-class EngineError(ClutchworkError, RuntimeError):
+class ExecutorError(ClutchworkError, RuntimeError):
     """Workers that cannot be had, or that die again and again."""
 
 
