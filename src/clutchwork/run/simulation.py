@@ -290,8 +290,8 @@ def told(system: System, status: int, index: int, at: float, value: float, colum
     if STATUSES[status] == "zeno" and index < 0:
         number = int(value)
         if number >= len(system.inputs):
-            parts = (*system.processes, *system.flows)
-            return explain(status, parts[number - len(system.inputs)], at, value)
+            crowded = (*system.processes, *system.flows)
+            return explain(status, crowded[number - len(system.inputs)], at, value)
         return explain(status, None, at, value, system.inputs[number].name)
     if status != NOT_FINITE or names_part(system, index):
         part = parts[index] if names_part(system, index) else None
