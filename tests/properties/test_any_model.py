@@ -111,6 +111,7 @@ MENDED: dict[str, list[int]] = {
     "a row behind an impulse that was taken back": [50452],
     "a belt of any force": [80583],
     "a load that died away with a state": [320168],
+    "a slip zero beside a transmission, found on the interpolant": [320743],
 }
 
 

@@ -228,6 +228,31 @@ CLUTCHWORK_INLINE Truth<T> stays_clear(const Workspace<T>& ws, int k, Real<T> si
   return g1 >= 0 && c0 >= 0 && c1 >= 0;
 }
 
+/// A zero of a line guard beside transmissions, found at s on the interpolant, where the state on their ties has it: by
+/// secants nearby. docs/theory/varying-ratios.md (9)
+template <class Form>
+[[gnu::noinline]] double crossing_on_ties(Form& form, Step<Form>& step, const LineGuard& guard, double noise,
+                                          double s) {
+  constexpr int rounds = 6;
+  constexpr double near = 0.05, apart = 1e-4;
+  auto& ws = form.ws;
+  auto at = [&](double x) {
+    const double t = step.t + x * step.h;
+    interpolate(form, step, x, step.point());
+    observe(form, t, step.point(), step.slope());
+    settle_ties(form, step.point());
+    inputs_at(ws, t);
+    return guard.sign * (value(form.rate(guard.branch, step.point()) + offset_rate(ws, guard.branch)) - guard.level);
+  };
+  double x = s, before = s * (1 - apart), f = at(x), f_before = at(before);
+  for (int k = 0; k < rounds && abs(f) > noise; ++k) {
+    const double next = x - f * (x - before) / (f - f_before);
+    if (!(next > 0 && next < 1 && abs(next - s) <= near)) return s;
+    before = x, f_before = f, x = next, f = at(x);
+  }
+  return x;
+}
+
 /// Slips and kinks.
 template <class Form>
 CLUTCHWORK_INLINE void find_line(Form& form, Step<Form>& step, Hit& hit) {
@@ -238,7 +263,10 @@ CLUTCHWORK_INLINE void find_line(Form& form, Step<Form>& step, Hit& hit) {
     const LineGuard& g = ws.guard.line[i];
     double g0, g1;
     if (stays_clear(ws, g.branch, g.sign, g.level, step.h, noise, g0, g1)) continue;
-    const double s = line_crossing(form, step, g, g0, g1, noise, hit.s);
+    double s = line_crossing(form, step, g, g0, g1, noise, hit.s);
+    if constexpr (Form::full) {
+      if (ws.ratios.n > 0 && s > 0 && s < 1) s = crossing_on_ties(form, step, g, noise, s);
+    }
     if (is_first(hit, s)) hit = {Hit::line, i, s, -1};
   }
 }
