@@ -104,7 +104,7 @@ def test_the_figure_is_plain_data(discs: cw.Trajectory) -> None:
     ("given", "named", "words"),
     [
         (["p.png"], {}, r"path 'p\.png' has the ending '\.png'; write it to a path that ends in \.html"),
-        ([], {"points": 3}, "points is 3: give a whole number from 100 on, or None"),
+        ([], {"points": 3}, "points is 3: give a whole number of at least 100, or None"),
         ([], {"points": "all"}, "points is 'all'"),
         ([], {"zom": 3}, "unknown field 'zom'; did you mean 'zoom'"),
         ([], {"lockup": None}, "unknown field 'lockup'"),

@@ -451,7 +451,7 @@ def test_copies_go_by_way_of_a_state() -> None:
     sim = cw.Simulator(rising())
     sim.advance(0.2)
     for make in (copy.copy, copy.deepcopy, pickle.dumps):
-        with pytest.raises(cw.UseError, match=r"begin with cw.Simulator\(model, start=state\)"):
+        with pytest.raises(cw.UseError, match=r"start with cw.Simulator\(model, start=state\)"):
             make(sim)
     run = pickle.loads(pickle.dumps(sim.run))
     assert np.array_equal(run.at([0.1, 0.2]).rows, sim.run.at([0.1, 0.2]).rows)

@@ -148,7 +148,7 @@ def _faults(
         if not isinstance(value, int) or isinstance(value, bool) or value < 1
     ]
     if not isinstance(seed, int) or isinstance(seed, bool) or seed < 0:
-        found.append(f"seed is {quote(seed)}: give a whole number from 0 on")
+        found.append(f"seed is {quote(seed)}: give a whole number of at least 0")
     if not isinstance(tolerance, float) or not 0.0 < tolerance < 1.0:
         found.append(f"tolerance is {quote(tolerance)}: give a number between 0 and 1, such as 1e-10")
     for name, value, known in (("solver", solver, (*SOLVERS,)), ("robust", robust, ROBUST)):

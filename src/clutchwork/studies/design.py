@@ -139,7 +139,7 @@ def design(
         problems.append(f"vary is {quote(vary)}: give distributions by name, {{'c1.gain': cw.normal(5e-4, 2e-5)}}")
     for name, number in (("count", count), ("seed", seed)):
         if not isinstance(number, int | np.integer) or isinstance(number, bool) or number < (name == "count"):
-            problems.append(f"{name} is {quote(number)}: give a whole number from {int(name == 'count')} on")
+            problems.append(f"{name} is {quote(number)}: give a whole number of at least {int(name == 'count')}")
     if method not in WAYS:
         problems.append(f"method is {quote(method)}{near(method, WAYS)}; known: {', '.join(WAYS)}")
     if second_order and method != "saltelli":

@@ -55,7 +55,7 @@ CONFIG: dict[str, Any] = {"displaylogo": False, "scrollZoom": True, "responsive"
 def _check_points(points: object) -> None:
     if points is None or (isinstance(points, int) and not isinstance(points, bool) and points >= FEWEST):
         return
-    remedy = f"give a whole number from {FEWEST} on, or None for all of them"
+    remedy = f"give a whole number of at least {FEWEST}, or None for all of them"
     raise UseError("explore", [f"points is {quote(points)}: {remedy}"])
 
 
