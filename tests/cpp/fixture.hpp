@@ -287,7 +287,9 @@ class Model {
     add(heat_direction), add(heat_to_), add(heat_share_), add(shared_scale_), add(shared_offset_);
     add(given), add(Indices(np)), add(resolve(refs_)), add(input_first_), add(input_count_), add(input_period_),
         add(input_value_);
-    add(segment_time_), add(segment_coef_), add(params_), add(points_), add(start), add(angles), add(states);
+    add(segment_time_), add(segment_coef_), add(params_), add(points_), add(start);
+    // no start is later than at 0
+    add(Numbers(std::size_t(nv * np))), add(angles), add(states);
     return out;
   }
 
