@@ -21,6 +21,7 @@ CONTACTS = {
     "$10^{-12}$ of what all torques together cause, or $10^{-10}$": "larger(1e-10 * scale, 1e-12 * ",
     "leaves the tolerance of within a millisecond": "return arrived ? larger(round_off, 1e3 * tolerance)",
     "between prescribed speeds alone within a microsecond": "return 1e6 * tolerance",
+    r"one that more than $2 \cdot 10^{-12}$ of all torques makes": "return larger(round_off, 2e-12 * ws.decision.pull",
     "at most $4 n + 5$ rounds": "round <= 4 * ws.sys.contacts + 4",
     "while time does not advance, to $10^{-9}$ s": "forced_time <= 1e-9",
     r"0 \le \alpha \le 2": "ample = 2",
