@@ -284,3 +284,22 @@ def test_adding_thermal_nodes_does_not_change_the_motion():
         runs.append(d.simulate(2.0, **FINE))
     (cold,), (hot,) = ([e for e in run.events if e.after == "locked"] for run in runs)
     assert hot.time == pytest.approx(cold.time, abs=1e-12)
+
+
+@pytest.mark.parametrize("speeds", [(0.0, 195.0), (0.0, -195.0), (195.0, -120.5), (-0.5, 0.25), (450.0, 3.0)])
+@pytest.mark.parametrize("first", [0.0, 20.0])
+@pytest.mark.parametrize("points", [2, 60, 5000])
+def test_a_speed_that_jumps_over_many_points_of_a_conductance(points: int, first: float, speeds: tuple[float, float]):
+    """The drum cools with the conductance before the jump, then with that behind it: an event passes all points."""
+    d = cw.Driveline()
+    drum, air = d.thermal("drum", capacity=100.0, temperature=400.0), d.ambient("air", temperature=300.0)
+    rising = [(float(x), 1.0 + 0.1 * float(x)) for x in np.linspace(first, 200.0, points)]
+    before, behind = speeds
+    fan = cw.Step(height=behind - before, start=1.0, offset=before)
+    d.add(cw.Convection("walls", hot=drum, cold=air, conductance=rising, speed=fan))
+    d.add(cw.Damper("drag", base=d.housing, follower=_idle(d), damping=1.0))
+    run = d.simulate(3.0, **FINE)
+    one, other = (1.0 + 0.1 * min(max(abs(speed), first), 200.0) for speed in speeds)
+    assert run["drum.temperature"][-1] == pytest.approx(
+        300.0 + 100.0 * math.exp(-(one + 2.0 * other) / 100.0), rel=1e-9
+    )

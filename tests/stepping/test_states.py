@@ -177,6 +177,28 @@ def test_speeds_follow_a_ratio_at_a_later_start() -> None:
     assert [run[f"{name}.speed"][0] for name in "abc"] == pytest.approx([18.0, 6.0, -1.5], rel=1e-14)
 
 
+@pytest.mark.parametrize("kind", ["zero beside the housing", "both given", "parallel", "singular"])
+def test_a_ratio_that_contradicts_given_speeds_at_a_later_start_jams(kind: str) -> None:
+    """At 0 s all fit; no impulse takes what was given."""
+    d = cw.Driveline("contradicted")
+    a = d.shaft("a", inertia=0.5, **({} if kind in ("parallel", "singular") else {"speed": 5.0}))
+    b = d.shaft("b", inertia=0.5, **({} if kind == "singular" else {"speed": 5.0}))
+    first = 0.0 if kind == "zero beside the housing" else 1.0
+
+    def gear(name: str, front: Any, then: float) -> None:
+        ratio = cw.Table([(0.0, first), (0.5, then), (1.0, then)])
+        d.add(cw.VariableGear(name, input=front, output=b, ratio=ratio))
+
+    gear("one", d.housing if first == 0.0 else a, -2.0 if kind == "singular" else 2.0)
+    if kind == "parallel":
+        gear("two", a, 3.0)
+    if kind == "singular":
+        d.add(cw.Planetary("set", sun=a, ring=b, carrier=d.shaft("c", inertia=0.5, speed=5.0), ratio=2.0))
+    with pytest.warns(cw.StoppedEarly, match="initial speeds break the ratio of a transmission at '"):
+        run = d.simulate(1.0, t_start=0.5)
+    assert run.status == "jammed"
+
+
 def test_a_run_that_is_left_between_steps_has_the_same_bits() -> None:
     """The slip that counts as zero is that of the last event, also where rows or a state are asked for in between."""
     d = cw.Driveline("parting")

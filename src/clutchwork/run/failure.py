@@ -27,7 +27,7 @@ WITH_VALUE = ("not_finite", "out_of_table", "chatter")
 JAMS = {
     "freewheel": ("prescribed speeds turn a freewheel backward", ""),
     "stop": ("prescribed speeds go beyond a stop", ""),
-    "ratio": ("prescribed speeds break the ratio of a transmission", ""),
+    "ratio": ("prescribed or initial speeds break the ratio of a transmission", ""),
     "light": (
         "the ratio is zero, and nothing else determines the speed of the shaft without inertia behind it",
         "give that shaft inertia, or keep the ratio away from zero",

@@ -175,7 +175,11 @@ struct OverTemperature {
   }
   template <class P, class T>
   static int cross(const P& p, const At<T>& at, int who, T*) {
-    return number(p, at.piece, Law::cells(p, at.points).next(cell(p, at.piece), who));
+    const auto table = Law::cells(p, at.points);
+    auto border = [&](int i) { return value(table.border(i)); };
+    const int next = table.next(cell(p, at.piece), who);
+    return number(p, at.piece,
+                  settled_interval(value(Law::warm(at)), table.borders(), next, border_slack * scale, border));
   }
   template <class P, class T>
   static int settled(const P& p, const At<T>& at) {

@@ -34,12 +34,18 @@ struct Convection : declared::Convection {
     if (x.interval == x.lowest && x.interval > 0) least.watch(S(x.side) * speed, turns);
     return least.margin();
   }
+  /// A speed that jumps may pass many points.
   template <class T>
   static int cross(const Params<T>& p, const At<T>& at, int who, T*) {
     Place x(p, at.points, at.piece);
     if (who == turns) x.side = -x.side;
     if (who == slower && x.interval > x.lowest) --x.interval;
     if (who == ahead || who == behind) x.side = who == ahead ? 1 : -1, x.interval += x.interval < x.count;
+    const auto* points = at.points + 3 * int(common(p.conductance.first));
+    auto border = [&](int i) { return value(points[3 * i]); };
+    const double speed = x.side * value(at.input[Input::speed]), slack = border_slack * (1 + abs(border(x.count - 1)));
+    const int reached = settled_interval(speed, x.count, x.interval, slack, border);
+    x.interval = larger(reached, x.lowest);
     return x.number();
   }
 

@@ -150,6 +150,22 @@ void begin_inputs(Workspace<T>& ws) {
   if (ws.ratios.n > 0) follow_start_ratios(ws);
 }
 
+/// The first transmission whose speeds at a later start are not those of its ratio there, because they were given, or
+/// none are; -1: each has them. docs/theory/reduction.md (13)
+template <class T>
+int contradicted_at_start(Workspace<T>& ws) {
+  if (ws.time == 0) return -1;
+  double fastest = 1;
+  for (int i = 0; i < ws.sys.speeds; ++i) fastest = larger(fastest, abs(value(ws.v[i])));
+  for (int a = 0; a < ws.ratios.n; ++a) {
+    const int front = first_of(ws, a);
+    const T missed = rate_of(ws, front) - ratio_now(ws, a).v * rate_of(ws, front + 1);
+    // given speeds are rounded when they are written
+    if (abs(value(missed)) > 2e-6 * fastest) return a;
+  }
+  return -1;
+}
+
 /// State at the start. False when the mass matrix is not positive definite.
 template <class T>
 bool start(Workspace<T>& ws) {
@@ -215,7 +231,9 @@ template <class T>
 Status reach_phase(Workspace<T>& ws) {
   if (!ws.started) {
     if (!start(ws)) return Status::bad_system;
-    const Status status = switch_modes(ws);
+    const int broken = contradicted_at_start(ws);
+    if (broken >= 0) ws.detail.component = first_of(ws, broken);
+    const Status status = broken >= 0 ? Status::jammed : switch_modes(ws);
     ws.started = status == Status::running;
     if (!ws.started) return status;
   }

@@ -70,7 +70,9 @@ double load_at_rest(const Workspace<T>& ws, int c) {
     for (int i = 0; i < E::inputs; ++i) {
       const std::int64_t ref = sys.contact_input[c] + i, code = sys.input_refs[ref];
       at[i] = ws.in.u[ref];
-      if (code >= sys.inputs) at[i] += T(code < sys.inputs + sys.shared ? state : slip), follows = true;
+      if (code < sys.inputs) continue;
+      const std::int64_t j = code - sys.inputs;
+      at[i] += T(j < sys.shared ? state * sys.shared_scale[j] : slip), follows = true;
     }
     if (!follows) return 0.0;
     const T load = contact_load(sys.contact_kind[c], ws.params + sys.contact_param[c], &at[0], points_of(ws));
