@@ -150,9 +150,10 @@ struct Cells {
     while (cell < borders() && x >= value(border(cell))) ++cell;
     return cell;
   }
-  int next(int cell, int who) const {
+  /// The cell behind a border, or the one beyond it that holds x where that has jumped.
+  int next(int cell, int who, double x, double scale) const {
     const int to = cell + (who == above ? 1 : -1);
-    return to < 0 ? 0 : to > borders() ? borders() : to;
+    return settled_interval(x, borders(), larger(to, 0), border_slack * scale, [&](int i) { return value(border(i)); });
   }
 };
 
@@ -175,11 +176,8 @@ struct OverTemperature {
   }
   template <class P, class T>
   static int cross(const P& p, const At<T>& at, int who, T*) {
-    const auto table = Law::cells(p, at.points);
-    auto border = [&](int i) { return value(table.border(i)); };
-    const int next = table.next(cell(p, at.piece), who);
-    return number(p, at.piece,
-                  settled_interval(value(Law::warm(at)), table.borders(), next, border_slack * scale, border));
+    const int next = Law::cells(p, at.points).next(cell(p, at.piece), who, value(Law::warm(at)), scale);
+    return number(p, at.piece, next);
   }
   template <class P, class T>
   static int settled(const P& p, const At<T>& at) {

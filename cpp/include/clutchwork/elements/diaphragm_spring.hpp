@@ -38,15 +38,11 @@ struct DiaphragmSpring : declared::DiaphragmSpring {
     least.watch(S(is_free(at.piece) ? -1 : 1) * travel(p, at) / S(width), touches);
     return least.margin();
   }
-  /// A pedal that jumps may pass many borders.
   template <class T>
   static int cross(const Params<T>& p, const At<T>& at, int who, T*) {
     if (who == touches) return at.piece ^ 1;
     const auto table = cells(p, at.points);
-    const double x = value(pressed(p, at)), slack = border_slack * width_of(table.axis);
-    auto border = [&](int i) { return value(table.border(i)); };
-    const int next = table.next(at.piece / 2, who);
-    return 2 * settled_interval(x, table.borders(), next, slack, border) + at.piece % 2;
+    return 2 * table.next(at.piece / 2, who, value(pressed(p, at)), width_of(table.axis)) + at.piece % 2;
   }
 
  private:

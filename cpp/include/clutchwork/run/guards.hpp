@@ -244,13 +244,14 @@ template <class Form>
     inputs_at(ws, t);
     return guard.sign * (value(form.rate(guard.branch, step.point()) + offset_rate(ws, guard.branch)) - guard.level);
   };
-  double x = s, before = s * (1 - apart), f = at(x), f_before = at(before);
+  double x = s, before = s * (1 - apart), f = at(x), f_before = at(before), best = s, least = abs(f);
   for (int k = 0; k < rounds && abs(f) > noise; ++k) {
     const double next = x - f * (x - before) / (f - f_before);
     if (!(next > 0 && next < 1 && abs(next - s) <= near)) return s;
     before = x, f_before = f, x = next, f = at(x);
+    if (abs(f) < least) best = x, least = abs(f);
   }
-  return x;
+  return best;
 }
 
 /// Slips and kinks.

@@ -92,11 +92,10 @@ void list_processes(Workspace<T>& ws) {
   }
 }
 
-/// Processes and flows on the pieces that hold what they see now; each may pass some on the way.
+/// Processes and flows on the pieces that hold what they see now; each may pass a few on the way.
 template <class T>
 void find_process_pieces(Workspace<T>& ws) {
-  // one piece at a time through tables of any measured size
-  constexpr int most = 4096;
+  constexpr int most = 64;
   bool moved = false;
   for (int i = 0; i < ws.guard.n_processes; ++i) {
     const int c = ws.guard.process[i];
