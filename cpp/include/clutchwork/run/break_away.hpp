@@ -118,7 +118,9 @@ CLUTCHWORK_INLINE void find_break_away(Form& form, Step<Form>& step, Hit& hit) {
     }
     if (ws.held.in_set[a] != 0) continue;
     double before, after;
-    if (holds_on(ws, a, step.h, before, after)) continue;
+    const bool holds = holds_on(ws, a, step.h, before, after);
+    // up to where a capacity bends, the end of the step says nothing
+    if (holds && hit.what != Hit::bend) continue;
     watched[n++] = a;
     m0 = smaller(m0, before + more_noise(ws, a, ws.here.capacity[a]));
     m1 = smaller(m1, after + more_noise(ws, a, ws.there.capacity[a]));
@@ -150,7 +152,7 @@ template <class Form>
     torques_at(form, step, s);
     return value(set_room(ws, k, ws.seen.carried, ws.here.noise[0], ws.loads.now));
   };
-  if (least >= ample - 1 && f(0.5) >= ample - 1) return;
+  if (hit.what != Hit::bend && least >= ample - 1 && f(0.5) >= ample - 1) return;
   const double s = first_dip(f, value(ws.here.room[k]), value(ws.there.room[k]), hit.s);
   if (is_first(hit, s)) hit = {Hit::set, k, s, -1};
 }
@@ -171,7 +173,7 @@ template <class Form>
     }
     for (int i = ws.held.set_first[k]; i < ws.held.set_first[k + 1]; ++i)
       bends = bends || load_bends(ws, ws.held.set_member[i]);
-    if (!bends && smaller(before, after) > change) continue;
+    if (!bends && hit.what != Hit::bend && smaller(before, after) > change) continue;
     fit(form, step);
     auto f = [&](double s) {
       torques_at(form, step, s);

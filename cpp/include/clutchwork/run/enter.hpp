@@ -13,6 +13,7 @@
 #include <clutchwork/run/gaps.hpp>
 #include <clutchwork/run/methods.hpp>
 #include <clutchwork/run/processes.hpp>
+#include <clutchwork/run/settle.hpp>
 #include <clutchwork/run/stiffness.hpp>
 #include <clutchwork/run/watch.hpp>
 #include <clutchwork/workspace.hpp>
@@ -138,7 +139,7 @@ bool enter_mode(Workspace<T>& ws, bool again = false) {
   list_laws(ws);
   list_processes(ws);
   list_gaps(ws);
-  if (!again) turn_jumped(ws);
+  if (!again) turn_jumped(ws), settle_locked(ws);
   if (ws.held.too_many || !count_reduced(ws)) return false;
   ws.reduced.method = choose_method(ws);
   ws.reduced.is_sparse = has_tangents<T> || sys.full[0] != 0 || sys.states > most_small_states(ws.reduced.method) ||

@@ -135,41 +135,62 @@ void find_exit(Form& form, Step<Form>& step, Hit& hit) {
   }
 }
 
-/// Where the laws of compliant contacts and the pieces of elements change.
-template <class Form>
-void find_law_hit(Form& form, Step<Form>& step, Hit& hit) {
-  using T = typename Form::Scalar;
+/// Where the law or the element of a branch leaves its piece, -1: not before what was hit; `who` leaves. Branch k has
+/// its rates in the motion, one below zero is at rest.
+template <class Form, class T = typename Form::Scalar>
+[[gnu::noinline]] double piece_end(Form& form, Step<Form>& step, const Branch<T>& b, int k, const Hit& hit, int& who) {
   Workspace<T>& ws = form.ws;
   const int nz = form.nz();
   // round-off of a margin: a state at its limit has not passed it. docs/theory/events.md, rule 12
   constexpr double noise = 1e-12;
+  const T still[most_ways] = {};
+  auto at_end = [&](double t, const T* y, const T* f, const Edge<T>& edge) {
+    inputs_of(form, t, y);
+    rate_slopes(ws, [&](int j) { return edge.slope[j]; });
+    const T *rate = k < 0 ? still : edge.rate + k, *slope = k < 0 ? still : edge.slope + k;
+    return law_margin(ws, b, rate, slope, y + nz, f + nz, who);
+  };
+  const auto start = at_end(step.t, step.y0(), step.f0(), ws.here);
+  const auto end = at_end(step.t + step.h, step.y1(), step.f1(), ws.there);
+  const double change = abs(value(end.v - start.v));
+  const double drift = step.h * larger(abs(value(start.d[0])), abs(value(end.d[0])));
+  if (smaller(value(start.v), value(end.v)) > larger(change, drift)) return -1;
+  fit(form, step);
+  auto f = [&](double s) {
+    interpolate(form, step, s, step.point());
+    inputs_of(form, step.t + s * step.h, step.point());
+    if (ws.in.n_rate_refs > 0) slopes_in(form, step, s);
+    T rate[most_ways] = {};
+    for (int w = 0; k >= 0 && w < b.ways; ++w) rate[w] = form.rate(k + w, step.point()) + offset_rate(ws, k + w);
+    return noise + value(law_margin(ws, b, rate, still, step.point() + nz, step.f0() + nz, who).v);
+  };
+  const double s = first_crossing(f, noise + value(start.v), noise + value(end.v), hit.s);
+  if (is_first(hit, s)) f(s);
+  return s;
+}
+
+/// Where the laws of compliant contacts and the pieces of elements change.
+template <class Form>
+void find_law_hit(Form& form, Step<Form>& step, Hit& hit) {
+  auto& ws = form.ws;
   for (int i = 0; i < ws.guard.n_switching; ++i) {
     const int k = ws.guard.switching[i];
-    const Branch<T>& b = ws.branch[k];
     int who = turned;
-    inputs_of(form, step.t, step.y0());
-    rate_slopes(ws, [&](int j) { return ws.here.slope[j]; });
-    const auto start = law_margin(ws, b, ws.here.rate + k, ws.here.slope + k, step.y0() + nz, step.f0() + nz, who);
-    inputs_of(form, step.t + step.h, step.y1());
-    rate_slopes(ws, [&](int j) { return ws.there.slope[j]; });
-    const auto end = law_margin(ws, b, ws.there.rate + k, ws.there.slope + k, step.y1() + nz, step.f1() + nz, who);
-    const double change = abs(value(end.v - start.v));
-    const double drift = step.h * larger(abs(value(start.d[0])), abs(value(end.d[0])));
-    if (smaller(value(start.v), value(end.v)) > larger(change, drift)) continue;
-    fit(form, step);
-    auto f = [&](double s) {
-      interpolate(form, step, s, step.point());
-      inputs_of(form, step.t + s * step.h, step.point());
-      if (ws.in.n_rate_refs > 0) slopes_in(form, step, s);
-      T rate[most_ways];
-      const T still[most_ways] = {};
-      for (int w = 0; w < b.ways; ++w) rate[w] = form.rate(k + w, step.point()) + offset_rate(ws, k + w);
-      return noise + value(law_margin(ws, b, rate, still, step.point() + nz, step.f0() + nz, who).v);
-    };
-    const double s = first_crossing(f, noise + value(start.v), noise + value(end.v), hit.s);
-    if (!is_first(hit, s)) continue;
-    f(s);
-    hit = {Hit::law, k, s, who};
+    const double s = piece_end(form, step, ws.branch[k], k, hit, who);
+    if (is_first(hit, s)) hit = {Hit::law, k, s, who};
+  }
+}
+
+/// Where the capacity of a locked contact bends, for its law is a table over what changes while it holds.
+/// docs/theory/events.md, rule 12
+template <class Form>
+[[gnu::noinline]] void find_bend(Form& form, Step<Form>& step, Hit& hit) {
+  auto& ws = form.ws;
+  for (int i = 0; i < ws.guard.n_bending; ++i) {
+    const int c = ws.guard.bending[i];
+    int who = turned;
+    const double s = piece_end(form, step, make_branch(ws, int(ws.sys.elements) + c, forward), -1, hit, who);
+    if (is_first(hit, s)) hit = {Hit::bend, c, s, who};
   }
 }
 
@@ -340,6 +361,7 @@ CLUTCHWORK_INLINE Hit find_hit(Form& form, Step<Form>& step) {
   list_near_loads(ws, step.h);
   find_line(form, step, hit);
   if (ws.guard.n_switching > 0) find_law_hit(form, step, hit);
+  if (ws.guard.n_bending > 0) find_bend(form, step, hit);
   if (ws.guard.n_processes > 0) find_process_hit(form, step, hit);
   if (ws.held.n > 0) find_break_away(form, step, hit);
   if (ws.held.n_sets > 0) find_set_limit(form, step, hit);

@@ -14,6 +14,7 @@ struct Hit {
     parting,
     load,
     law,
+    bend,
     fault,
     exit,
     process,
@@ -42,6 +43,8 @@ constexpr const char* name_of(Hit::What what) {
       return "load";
     case Hit::law:
       return "law";
+    case Hit::bend:
+      return "bend";
     case Hit::fault:
       return "fault";
     case Hit::exit:

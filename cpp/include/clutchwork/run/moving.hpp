@@ -115,7 +115,8 @@ T guard_at(Form& form, Step<Form>& step, const Hit& hit, double t, const T* y, i
       return T(hit.who) * (stop_end(ws, hit.index, hit.who) - y[nz + place_of(ws, hit.index)]);
     case Hit::nothing:
     case Hit::exit:
-      // the run ends there
+    case Hit::bend:
+      // the run ends there, or nothing that moves depends on it
       break;
   }
   return T(1);
@@ -142,6 +143,7 @@ int component_of(const Workspace<T>& ws, const Hit& hit) {
     case Hit::fault:
     case Hit::exit:
     case Hit::gap:
+    case Hit::bend:
       return ne + hit.index;
     case Hit::process:
     case Hit::nothing:
@@ -175,6 +177,7 @@ double guard_scale(Form& form, const Hit& hit, const T* y) {
     case Hit::fault:
     case Hit::process:
     case Hit::exit:
+    case Hit::bend:
     case Hit::nothing:
       break;
   }
@@ -396,6 +399,8 @@ T hit_shift(Form& form, Step<Form>& step, const Hit& hit, const T* velocity) {
 template <class Form>
 void move_to_hit(Form& form, Step<Form>& step, const Hit& hit) {
   using T = typename Form::Scalar;
+  // what does not touch the motion moves nothing
+  if (hit.what == Hit::bend) return;
   // the slope of the interpolant is there already
   T *velocity = step.k(0), *algebraic = step.k(2);
   motion_now(form, step.y0(), algebraic, velocity);

@@ -97,6 +97,15 @@ bool pass_law(Form& form, Step<Form>& step, int k, int who) {
   return !events_crowd(ws, b.direction);
 }
 
+/// The law of a locked contact goes to its next piece. False: it does so without end.
+template <class T>
+bool pass_bend(Workspace<T>& ws, int c, int who) {
+  const int d = int(ws.sys.elements) + c;
+  const T still[most_ways] = {};
+  ws.piece[d] = law_cross(ws, make_branch(ws, d, forward), still, who, ws.state);
+  return !events_crowd(ws, d);
+}
+
 /// A process goes to its next piece. False: it does so without end. `moved`: it has set its states, which others may
 /// read.
 template <class Form>

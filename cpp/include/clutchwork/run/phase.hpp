@@ -479,6 +479,7 @@ class Phase : public Pace<typename Form::Scalar> {
   CLUTCHWORK_INLINE bool passes(const Hit& hit) {
     if (hit.what == Hit::flip) return passes_flip(hit.index);
     if (hit.what == Hit::process) return passes_process(hit);
+    if (hit.what == Hit::bend) return passes_bend(hit);
     const LineGuard* guard = hit.what == Hit::line ? &ws_.guard.line[hit.index] : nullptr;
     const bool law = hit.what == Hit::law || (guard != nullptr && guard->kind == LineGuard::turn);
     if (!law && (guard == nullptr || guard->kind == LineGuard::slip)) return false;
@@ -506,6 +507,17 @@ class Phase : public Pace<typename Form::Scalar> {
     look_on();
     if (is_beyond(ws_)) return hand_over(Cause::other_event), true;
     show_behind(false);
+    h_ = ws_.last_step;
+    return true;
+  }
+
+  /// The capacity of a locked contact bends, all else goes on.
+  bool passes_bend(const Hit& hit) {
+    if (!pass_bend(ws_, hit.index, hit.who)) {
+      leave(Status::zeno);
+      return false;
+    }
+    look_on();
     h_ = ws_.last_step;
     return true;
   }

@@ -27,6 +27,16 @@ void find_pieces(Workspace<T>& ws) {
   }
 }
 
+/// Locked contacts whose laws have pieces are on those that hold what they see now.
+template <class T>
+void settle_locked(Workspace<T>& ws) {
+  const T still[most_ways] = {};
+  for (int i = 0; i < ws.guard.n_bending; ++i) {
+    const int d = int(ws.sys.elements) + ws.guard.bending[i];
+    ws.piece[d] = settled_piece(ws, make_branch(ws, d, forward), still);
+  }
+}
+
 /// The same inside a phase, where inputs have jumped and rates have not.
 template <class T>
 void settle_pieces(Workspace<T>& ws) {
@@ -34,6 +44,7 @@ void settle_pieces(Workspace<T>& ws) {
     Branch<T>& b = ws.branch[ws.guard.switching[i]];
     ws.piece[b.direction] = b.piece = settled_piece(ws, b, PresentRates<T>(ws, b).at);
   }
+  settle_locked(ws);
 }
 
 }  // namespace clutchwork

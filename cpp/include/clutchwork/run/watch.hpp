@@ -11,8 +11,10 @@ namespace clutchwork {
 template <class T>
 void list_laws(Workspace<T>& ws) {
   ws.guard.n_switching = ws.guard.n_chattering = ws.guard.n_bounded = ws.guard.n_undirected = 0;
+  ws.guard.n_bending = 0;
   for (int c = 0; c < ws.sys.contacts; ++c) {
     if (ws.contact.loaded[c] && is_bounded_law(ws.sys.contact_law[c])) ws.guard.bounded[ws.guard.n_bounded++] = c;
+    if (ws.contact.mode[c] == locked && is_settling_law(ws.sys.contact_law[c])) ws.guard.bending[ws.guard.n_bending++] = c;
   }
   for (int k = 0; k < ws.n_branches; ++k) {
     const Branch<T>& b = ws.branch[k];

@@ -44,12 +44,13 @@ struct Guards {
   int *bounded = nullptr, *faulty = nullptr;        ///< contacts whose laws can be left; contacts that can fail
   int *load = nullptr, *near = nullptr;  ///< contacts whose loads may pass zero; those that may in the present step
   int* gap = nullptr;                    ///< stops that are open
+  int* bending = nullptr;                ///< locked contacts whose laws have pieces
   int* limit = nullptr;                  ///< carriers that may break away: scratch
   int* process = nullptr;                ///< processes that switch between pieces, and flows behind them
   double* load_size = nullptr;           ///< largest size that the load of a contact may have, 0: not known
   double* turned_at = nullptr;           ///< [s] when the load of a contact passed zero last
   int n_lines = 0, n_switching = 0, n_chattering = 0, n_bounded = 0, n_faulty = 0, n_loads = 0, n_near = 0;
-  int n_processes = 0, n_gaps = 0;
+  int n_processes = 0, n_gaps = 0, n_bending = 0;
   int n_undirected = 0;  ///< open contacts at rest
   int reversals = 0;     ///< of slips that chatter
   int strained = 0;      ///< explicit steps in a row at the limit of their stability
@@ -63,7 +64,7 @@ struct Guards {
     a.take(p.bounded, n.contacts), a.keep(p.faulty, n.contacts, 0, n.contacts - 1);
     a.keep(p.load, n.contacts, 0, n.contacts - 1), a.take(p.near, n.contacts), a.take(p.limit, n.contacts);
     a.take(p.load_size, n.contacts), a.take(p.turned_at, n.contacts), a.take(p.process, n.processes + n.flows);
-    a.take(p.gap, n.contacts);
+    a.take(p.gap, n.contacts), a.take(p.bending, n.contacts);
   }
 };
 
