@@ -6,7 +6,7 @@
 #include <nanobind/stl/tuple.h>
 #include <nanobind/stl/vector.h>
 #include <clutchwork/layout.gen.hpp>
-#include <clutchwork/run/hit.hpp>
+#include <clutchwork/run/guards/list.hpp>
 #include <clutchwork/schema.gen.hpp>
 
 #include <algorithm>
@@ -248,7 +248,7 @@ NB_MODULE(_derivatives, m) {
   m.attr("schema") = clutchwork::schema_text;
   m.attr("layout") = clutchwork::layout_text;
   nb::list guards;
-  for (int what = 0; const char* name = clutchwork::name_of(clutchwork::Hit::What(what)); ++what) guards.append(name);
+  for (int i = 0; const char* name = clutchwork::GuardList::name(i); ++i) guards.append(name);
   m.attr("guards") = nb::tuple(guards);
   m.def("supported", &cw_tangents_supported, "Whether it was compiled for the processor of this machine.");
   nb::class_<Adjoint>(m, "Adjoint")

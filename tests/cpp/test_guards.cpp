@@ -1,6 +1,6 @@
 // The search for the first zero of a guard: polynomials with known roots.
 
-#include <clutchwork/run/guards.hpp>
+#include <clutchwork/run/guards/list.hpp>
 
 #include "check.hpp"
 

@@ -1,7 +1,8 @@
 #pragma once
 #include <clutchwork/components/branch.hpp>
 #include <clutchwork/lanes/inputs.hpp>
-#include <clutchwork/run/guards.hpp>
+#include <clutchwork/run/guards/line.hpp>
+#include <clutchwork/run/guards/torques.hpp>
 #include <clutchwork/run/integrator/rodas5p.hpp>
 #include <clutchwork/run/step.hpp>
 

@@ -10,7 +10,7 @@
 #include <clutchwork/motion/branches.hpp>
 #include <clutchwork/motion/reduce.hpp>
 #include <clutchwork/motion/sparse.hpp>
-#include <clutchwork/run/gaps.hpp>
+#include <clutchwork/run/guards/list.hpp>
 #include <clutchwork/run/methods.hpp>
 #include <clutchwork/run/processes.hpp>
 #include <clutchwork/run/settle.hpp>
@@ -137,8 +137,7 @@ bool enter_mode(Workspace<T>& ws, bool again = false) {
   list_locked_now(ws, again);
   pack_branches(ws);
   list_laws(ws);
-  list_processes(ws);
-  list_gaps(ws);
+  watch_guards(ws);
   if (!again) turn_jumped(ws), settle_locked(ws);
   if (ws.held.too_many || !count_reduced(ws)) return false;
   ws.reduced.method = choose_method(ws);

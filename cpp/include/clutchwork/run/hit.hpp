@@ -1,69 +1,58 @@
 #pragma once
 #include <clutchwork/components/scalar.hpp>
+#include <clutchwork/workspace.hpp>
 
 /// What is found first inside a step.
 namespace clutchwork {
 
-/// The first thing that happens inside a step.
+/// The first thing that happens inside a step, and of which guard.
 struct Hit {
-  enum What : int {
-    nothing,
-    line,
-    multiplier,
-    set,
-    parting,
-    load,
-    law,
-    bend,
-    fault,
-    exit,
-    process,
-    flip,
-    gap
-  } what = nothing;
-  int index = -1;  ///< guard, locked contact, dependent set, spare, contact, branch, or process
-  double s = 1;    ///< where in the step, 0 to 1
-  int who = -1;    ///< what of a law leaves its piece; the end that a stop meets
+  int what = -1;       ///< place of its guard in the list of guards, -1: nothing
+  int index = -1;      ///< guard, locked contact, dependent set, spare, contact, branch, or process
+  double s = 1;        ///< where in the step, 0 to 1
+  int who = -1;        ///< what of a law leaves its piece; the end that a stop meets
+  bool bends = false;  ///< what is held bends there
+  int asked = -1;      ///< place of the guard that looks
+
+  CLUTCHWORK_INLINE bool none() const { return what < 0; }
+
+  /// Whether a zero at s comes before what has been found.
+  CLUTCHWORK_INLINE bool is_after(double at) const { return at >= 0 && (none() || at < s); }
+
+  /// What the guard that looks has found at a share of the step, where that is first.
+  CLUTCHWORK_INLINE bool take(double at, int found, int leaves = -1) {
+    if (!is_after(at)) return false;
+    what = asked, index = found, s = at, who = leaves, bends = false;
+    return true;
+  }
 };
 
-/// What the caller of a run with derivatives knows a kind by; null behind the last one.
-constexpr const char* name_of(Hit::What what) {
-  switch (what) {
-    case Hit::nothing:
-      return "nothing";
-    case Hit::line:
-      return "line";
-    case Hit::multiplier:
-      return "multiplier";
-    case Hit::set:
-      return "set";
-    case Hit::parting:
-      return "parting";
-    case Hit::load:
-      return "load";
-    case Hit::law:
-      return "law";
-    case Hit::bend:
-      return "bend";
-    case Hit::fault:
-      return "fault";
-    case Hit::exit:
-      return "exit";
-    case Hit::process:
-      return "process";
-    case Hit::flip:
-      return "flip";
-    case Hit::gap:
-      return "gap";
+/// A guard that has its own scale already, or is a slip.
+struct OwnScale {
+  template <class Form, class T = typename Form::Scalar>
+  static double scale(Form&, const Hit&, const T*) {
+    return 1;
   }
-  return nullptr;
-}
+};
+
+/// A guard of contacts.
+struct OfContact {
+  template <class T>
+  static int component(const Workspace<T>& ws, const Hit& hit) {
+    return int(ws.sys.elements) + hit.index;
+  }
+};
+
+/// A guard of what has no direction.
+struct OfNone {
+  template <class T>
+  static int component(const Workspace<T>&, const Hit&) {
+    return -1;
+  }
+};
 
 /// Round-off of a load over its largest size: a load that has passed zero passes it again only from farther away.
 /// docs/theory/events.md, rule 10
 inline constexpr double load_noise = 1e-11;
-
-/// Whether a zero at s comes before what has been found.
-CLUTCHWORK_INLINE bool is_first(const Hit& hit, double s) { return s >= 0 && (hit.what == Hit::nothing || s < hit.s); }
 
 }  // namespace clutchwork

@@ -4,17 +4,16 @@
 #include <clutchwork/contacts/locked.hpp>
 #include <clutchwork/contacts/ratios.hpp>
 #include <clutchwork/contacts/sticking.hpp>
-#include <clutchwork/run/break_away.hpp>
 #include <clutchwork/run/event.hpp>
-#include <clutchwork/run/guards.hpp>
+#include <clutchwork/run/event_sensitivity.hpp>
+#include <clutchwork/run/guards/list.hpp>
 #include <clutchwork/run/hit.hpp>
 #include <clutchwork/run/integrator/memory.hpp>
 #include <clutchwork/run/loads.hpp>
 #include <clutchwork/run/massless.hpp>
-#include <clutchwork/run/moving.hpp>
 #include <clutchwork/run/output.hpp>
 #include <clutchwork/run/pace.hpp>
-#include <clutchwork/run/pass.hpp>
+#include <clutchwork/run/passive_events.hpp>
 #include <clutchwork/run/power.hpp>
 #include <clutchwork/run/snapshot.hpp>
 #include <clutchwork/run/step.hpp>
@@ -56,6 +55,8 @@ class Phase : public Pace<typename Form::Scalar> {
   [[no_unique_address]] std::conditional_t<has_tangents<T>, Variation<Form>, NoVariation> varied_;
 
  public:
+  using Scalar = T;
+
   template <class Integrator>
   Phase(Workspace<T>& ws, double t_end, Sink& sink, Tag<Integrator>)
       : Base(ws, t_end, sink), form_(ws), step_(form_), calls_(phase_calls<Integrator>(form_)), varied_(form_, step_) {
@@ -139,7 +140,11 @@ class Phase : public Pace<typename Form::Scalar> {
     h_ = ws_.last_step > 0 ? ws_.last_step : first_step(taken_form(), taken_step(), t_end_ - ws_.time);
   }
 
- private:
+  // What guards ask for where they were hit.
+
+  Workspace<T>& ws() { return ws_; }
+  Form& form() { return form_; }
+  Step<Form>& step() { return step_; }
   // the form and the step in which the run goes on and guards are sought: of a run with derivatives its plain image
   CLUTCHWORK_INLINE auto& taken_form() {
     if constexpr (has_tangents<T>)
@@ -153,7 +158,38 @@ class Phase : public Pace<typename Form::Scalar> {
     else
       return step_;
   }
+  /// The modes must be decided anew.
+  void decide(Cause cause, int contact = -1) {
+    ws_.happened.cause = cause;
+    ws_.happened.contact = contact;
+    over_ = true;
+  }
+  /// The run ends with the present state of the phase, which nobody exports.
+  void end(Status status) { status_ = status; }
+  /// Nothing needs a decision, but for torques that have jumped beyond what locked contacts hold.
+  void go_on(bool jumped) {
+    look_on();
+    if (jumped && is_beyond(taken_form().ws)) return decide(Cause::other_event);
+    show_behind(false);
+    h_ = ws_.last_step;
+  }
+  /// The same where no restart follows that would shorten the step.
+  void go_on_as_before() {
+    look_on();
+    h_ = ws_.last_step = smaller(ws_.last_step, larger(h_, reach_));
+  }
+  /// The next step is not longer than `most` says, where the phase goes on.
+  template <class Most>
+  void limit_step(Most&& most) {
+    if (!over_) h_ = ws_.last_step = smaller(ws_.last_step, most());
+  }
+  /// Whether torques balance at the present state.
+  bool is_balanced() {
+    evaluate(form_, ws_.time, step_.y0(), step_.slope());
+    return clutchwork::is_balanced(ws_);
+  }
 
+ private:
   CLUTCHWORK_INLINE void look_here() {
     if constexpr (has_tangents<T>)
       varied_.reflect_here();
@@ -173,13 +209,6 @@ class Phase : public Pace<typename Form::Scalar> {
       if (leave_event(form_, step_)) balance_massless(form_, step_);
     }
     look_here();
-  }
-
-  /// The modes must be decided anew.
-  void hand_over(Cause cause, int contact = -1) {
-    ws_.happened.cause = cause;
-    ws_.happened.contact = contact;
-    over_ = true;
   }
 
   /// Speeds without inertia have jumped to their balance: the modes were decided with other torques. Once at an
@@ -215,12 +244,12 @@ class Phase : public Pace<typename Form::Scalar> {
     note_before(form_, step_, 0.0);
     if (knots_crowd(ws_)) return leave(Status::zeno);
     const bool jumps = (!Form::small || sink_.steps > 0) && any_jumps(ws_);
-    if (knot_decides(ws_)) return hand_over(Cause::input);
+    if (knot_decides(ws_)) return decide(Cause::input);
     if constexpr (!Form::small) {
       if (jumps && balance_massless(form_, step_)) export_state(form_, step_.y0());
     }
     look_here();
-    if (knot_lets_go(taken_form().ws)) return hand_over(Cause::input);
+    if (knot_lets_go(taken_form().ws)) return decide(Cause::input);
     if constexpr (has_tangents<T>) {
       if (leave_event(form_, step_)) balance_massless(form_, step_), look_here();
     }
@@ -281,10 +310,10 @@ class Phase : public Pace<typename Form::Scalar> {
       land(hit.s);
     } else if (misses_rest(hit)) {
       retake();
-    } else if (Form::full && hit.what == Hit::nothing && taken_form().ws.ratios.jammed >= 0) {
+    } else if (Form::full && hit.none() && taken_form().ws.ratios.jammed >= 0) {
       jam(taken_form().ws.ratios.jammed);
     } else if (reach(hit.s)) {
-      hit.what == Hit::nothing ? accept() : meet(hit);
+      hit.none() ? accept() : meet(hit);
     }
   }
 
@@ -301,7 +330,7 @@ class Phase : public Pace<typename Form::Scalar> {
   /// Whether the step must be repeated to end where a guard was hit, because its own estimate does not speak for that
   /// point. docs/theory/events.md, rule 7
   CLUTCHWORK_INLINE bool must_land(const Hit& hit) {
-    if (hit.what == Hit::nothing || landings_ >= most_landings || hit.s <= 0 || hit.s >= 1) return false;
+    if (hit.none() || landings_ >= most_landings || hit.s <= 0 || hit.s >= 1) return false;
     return !(error_until(taken_form(), taken_step(), hit.s) <= most_cut_error);
   }
 
@@ -325,7 +354,7 @@ class Phase : public Pace<typename Form::Scalar> {
   /// Whether a step towards rest has run over a change of the coefficient: the two solutions whose difference is its
   /// error may agree by chance. docs/theory/events.md, rule 7
   bool misses_rest(const Hit& hit) {
-    if (!calls_.stiff || hit.what != Hit::nothing || !nears_rest(taken_form().ws)) return false;
+    if (!calls_.stiff || !hit.none() || !nears_rest(taken_form().ws)) return false;
     fit(taken_form(), taken_step());
     const double missed = error_until(taken_form(), taken_step(), inner);
     if (missed > most_inner_error) return error_ = missed, true;
@@ -442,18 +471,24 @@ class Phase : public Pace<typename Form::Scalar> {
     interpolate(form_, step_, at, step_.u());
     ws_.time = smaller(ws_.time + hit.s * reach_, stop_);
     forget_forced(ws_);
-    if (hit.what == Hit::set) force_set(hit);
+    GuardList::visit(hit.what, [&](auto tag) {
+      using G = typename decltype(tag)::type;
+      if constexpr (requires { G::force(*this, hit); }) G::force(*this, hit);
+    });
     if constexpr (has_tangents<T>) slope_at_end();
     for (int i = 0; i < form_.n(); ++i) step_.y0()[i] = step_.u()[i];
     if constexpr (has_tangents<T>) ws_.moved.span = planned, move_to_hit(form_, step_, hit);
-    if (hit.what == Hit::gap) land_on_end(form_, step_, hit);
+    GuardList::visit(hit.what, [&](auto tag) {
+      using G = typename decltype(tag)::type;
+      if constexpr (requires { G::arrive(form_, step_, hit); }) G::arrive(form_, step_, hit);
+    });
     ws_.in.time = -infinity;
     if constexpr (Form::full) keep_ties(form_, step_, ws_.time, step_.y0());
     export_state(form_, step_.y0());
     input_slopes_at(ws_, ws_.time);
     keep_prescribed(ws_);
     keep_ratios(ws_);
-    if (!passes(hit) && !over_) settle_later(hit);
+    GuardList::visit(hit.what, [&](auto tag) { decltype(tag)::type::settle(*this, hit); });
   }
 
   /// Slopes of the speeds without inertia, which no equation of motion gives.
@@ -462,134 +497,6 @@ class Phase : public Pace<typename Form::Scalar> {
   {
     if (step_.h > 0) return interpolate_slope(form_, step_, 1.0, step_.k(2));
     for (int i = 0; i < form_.n(); ++i) step_.k(2)[i] = T(0);
-  }
-
-  /// A set at its limit load: its contacts slip the way in which it gives way, seen just behind the limit.
-  void force_set(const Hit& hit) {
-    auto& ws = taken_form().ws;
-    torques_at(taken_form(), taken_step(), larger(hit.s, 1e-6));
-    if constexpr (has_tangents<T>) {
-      for (int a = 0; a < ws_.held.n; ++a) ws_.seen.carried[a] = T(ws.seen.carried[a]);
-      for (int l = 0; l < ws_.sys.loads; ++l) ws_.loads.now[l] = T(ws.loads.now[l]);
-    }
-    break_set(ws_, hit.index, ws_.seen.carried);
-  }
-
-  /// Guards that need no decision: the next piece of a law or a table, an open contact that passes zero.
-  CLUTCHWORK_INLINE bool passes(const Hit& hit) {
-    if (hit.what == Hit::flip) return passes_flip(hit.index);
-    if (hit.what == Hit::process) return passes_process(hit);
-    if (hit.what == Hit::bend) return passes_bend(hit);
-    const LineGuard* guard = hit.what == Hit::line ? &ws_.guard.line[hit.index] : nullptr;
-    const bool law = hit.what == Hit::law || (guard != nullptr && guard->kind == LineGuard::turn);
-    if (!law && (guard == nullptr || guard->kind == LineGuard::slip)) return false;
-    if (law && !pass_law(form_, step_, hit.what == Hit::law ? hit.index : guard->branch, hit.who)) {
-      leave(Status::zeno);
-      return false;
-    }
-    if (!law) pass_line(form_, *guard);
-    look_on();
-    if (law && is_beyond(taken_form().ws)) return hand_over(Cause::other_event), true;
-    show_behind(false);
-    if (hit.what == Hit::law) ws_.last_step = smaller(ws_.last_step, collision_step(taken_form(), hit.index));
-    h_ = ws_.last_step;
-    return true;
-  }
-
-  /// A process on its next piece; states that it has set may be loads of contacts.
-  bool passes_process(const Hit& hit) {
-    bool moved = false;
-    if (!pass_process(form_, step_, hit.index, hit.who, moved)) {
-      leave(Status::zeno);
-      return false;
-    }
-    if (moved) return false;
-    look_on();
-    if (is_beyond(ws_)) return hand_over(Cause::other_event), true;
-    show_behind(false);
-    h_ = ws_.last_step;
-    return true;
-  }
-
-  /// The capacity of a locked contact bends, all else goes on.
-  bool passes_bend(const Hit& hit) {
-    if (!pass_bend(ws_, hit.index, hit.who)) {
-      leave(Status::zeno);
-      return false;
-    }
-    look_on();
-    h_ = ws_.last_step;
-    return true;
-  }
-
-  /// A load changes to the other line, with the same torque.
-  bool passes_flip(int l) {
-    const int c = ws_.sys.load_contact[l];
-    if (events_crowd(ws_, int(ws_.sys.elements) + c)) {
-      leave(Status::zeno);
-      return false;
-    }
-    ws_.loads.line[l] = 1 - ws_.loads.line[l];
-    evaluate(form_, ws_.time, step_.y0(), step_.slope());
-    if (!is_balanced(ws_)) {
-      ws_.loads.jammed = c;
-      hand_over(Cause::jam, c);
-      return true;
-    }
-    look_on();
-    // no restart follows that would shorten it
-    h_ = ws_.last_step = smaller(ws_.last_step, larger(h_, reach_));
-    return true;
-  }
-
-  /// Leave what happened to the decision.
-  void settle_later(const Hit& hit) {
-    const int ne = int(ws_.sys.elements);
-    switch (hit.what) {
-      case Hit::line:
-        return hand_over(Cause::slip_zero, ws_.branch[ws_.guard.line[hit.index].branch].direction - ne);
-      case Hit::multiplier:
-        hand_over(Cause::torque_limit, ws_.held.contact[hit.index]);
-        return break_away(hit);
-      case Hit::set:
-        hand_over(Cause::torque_limit);
-        if (events_crowd(ws_, ne + ws_.held.set_member[ws_.held.set_first[hit.index]])) status_ = Status::zeno;
-        return roll_over(hit.index);
-      case Hit::parting:
-        return hand_over(Cause::torque_limit, ws_.held.spare[hit.index]);
-      case Hit::exit:
-        ws_.detail.component = ne + hit.index;
-        return leave(Status::out_of_table);
-      case Hit::gap:
-        return hand_over(Cause::impact, hit.index);
-      case Hit::fault:
-        hand_over(Cause::fault, hit.index);
-        return fail(ws_, hit.index);
-      case Hit::process:
-        return hand_over(Cause::input);
-      default:
-        hand_over(Cause::input, hit.index);
-        return turn_load(ws_, hit.index);
-    }
-  }
-
-  /// A contact at its limit slips against its torque; a freewheel overruns, or gives way for good.
-  /// docs/theory/contacts.md, rule 4
-  void break_away(const Hit& hit) {
-    const int c = ws_.happened.contact;
-    if (rolls_over(ws_, c)) return fail(ws_, c);
-    if (is_rigid(ws_, c)) return;
-    const double pull = hit.s > 0 ? value(ws_.happened.torque[c]) : value(ws_.there.multiplier[hit.index]);
-    const int way = free_way(ws_, c);
-    ws_.contact.forced[c] = way != 0 ? way : pull > 0 ? backward : forward;
-  }
-
-  /// Freewheels of a set that gives way at their own limit do so for good.
-  void roll_over(int k) {
-    for (int i = ws_.held.set_first[k]; i < ws_.held.set_first[k + 1]; ++i) {
-      const int c = ws_.held.set_member[i];
-      if (ws_.contact.forced[c] == backward && rolls_over(ws_, c)) fail(ws_, c);
-    }
   }
 };
 

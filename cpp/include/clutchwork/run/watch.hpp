@@ -7,20 +7,13 @@
 /// Lists of what the guards must watch in the present modes: docs/theory/events.md.
 namespace clutchwork {
 
-/// Branches whose laws switch, jump or end, and open contacts at rest.
+/// Branches whose laws jump with the slip, and open contacts at rest.
 template <class T>
 void list_laws(Workspace<T>& ws) {
-  ws.guard.n_switching = ws.guard.n_chattering = ws.guard.n_bounded = ws.guard.n_undirected = 0;
-  ws.guard.n_bending = 0;
-  for (int c = 0; c < ws.sys.contacts; ++c) {
-    if (ws.contact.loaded[c] && is_bounded_law(ws.sys.contact_law[c])) ws.guard.bounded[ws.guard.n_bounded++] = c;
-    if (ws.contact.mode[c] == locked && is_settling_law(ws.sys.contact_law[c])) ws.guard.bending[ws.guard.n_bending++] = c;
-  }
+  ws.guard.n_chattering = ws.guard.n_undirected = 0;
   for (int k = 0; k < ws.n_branches; ++k) {
-    const Branch<T>& b = ws.branch[k];
-    if (is_switching(b)) ws.guard.switching[ws.guard.n_switching++] = k;
-    if (b.law < 0) continue;
-    if (is_chattering_law(b.law)) ws.guard.chattering[ws.guard.n_chattering++] = k;
+    const int law = ws.branch[k].law;
+    if (law >= 0 && is_chattering_law(law)) ws.guard.chattering[ws.guard.n_chattering++] = k;
   }
   for (int k = ws.n_branches; k < ws.n_rates; ++k) ws.guard.n_undirected += ws.branch[k].sign == 0;
 }

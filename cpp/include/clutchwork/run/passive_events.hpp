@@ -6,8 +6,8 @@
 #include <clutchwork/contacts/sticking.hpp>
 #include <clutchwork/motion/dynamics.hpp>
 #include <clutchwork/motion/shared.hpp>
-#include <clutchwork/run/break_away.hpp>
 #include <clutchwork/run/event.hpp>
+#include <clutchwork/run/guards/torques.hpp>
 #include <clutchwork/run/integrator/memory.hpp>
 #include <clutchwork/run/loads.hpp>
 #include <clutchwork/run/massless.hpp>

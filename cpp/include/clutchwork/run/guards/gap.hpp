@@ -5,17 +5,8 @@
 #include <clutchwork/run/locate.hpp>
 #include <clutchwork/workspace.hpp>
 
-/// Where in a step an open stop meets an end: docs/theory/play.md.
+/// Where in a step an open stop meets an end. docs/theory/play.md
 namespace clutchwork {
-
-/// List the stops that are open.
-template <class T>
-void list_gaps(Workspace<T>& ws) {
-  ws.guard.n_gaps = 0;
-  for (int c = 0; c < ws.sys.contacts; ++c) {
-    if (is_stop(ws, c) && ws.contact.side[c] == 0) ws.guard.gap[ws.guard.n_gaps++] = c;
-  }
-}
 
 /// Distance of a position from an end over a step, as a quartic in Bernstein form.
 struct GapGuard {
@@ -77,22 +68,54 @@ double gap_crossing(Form& form, Step<Form>& step, int c, int side, double limit)
 }
 
 /// Where a stop that is open meets an end.
-template <class Form>
-[[gnu::noinline]] void find_gap(Form& form, Step<Form>& step, Hit& hit) {
-  auto& ws = form.ws;
-  for (int g = 0; g < ws.guard.n_gaps; ++g) {
-    const int c = ws.guard.gap[g];
-    for (int side = -1; side <= 1; side += 2) {
-      const double s = gap_crossing(form, step, c, side, hit.s);
-      if (is_first(hit, s)) hit = {Hit::gap, c, s, side};
+struct GapEnd : OfContact {
+  static constexpr const char* name = "gap";
+
+  template <class T>
+  static bool watches(const Workspace<T>& ws) {
+    return ws.guard.n_gaps > 0;
+  }
+  template <class T>
+  static void watch(Workspace<T>& ws) {
+    ws.guard.n_gaps = 0;
+    for (int c = 0; c < ws.sys.contacts; ++c) {
+      if (is_stop(ws, c) && ws.contact.side[c] == 0) ws.guard.gap[ws.guard.n_gaps++] = c;
     }
   }
-}
-
-/// The position of a stop that has met an end is there.
-template <class Form>
-void land_on_end(Form& form, Step<Form>& step, const Hit& hit) {
-  step.y0()[form.nz() + place_of(form.ws, hit.index)] = stop_end(form.ws, hit.index, hit.who);
-}
+  template <class Form>
+  [[gnu::noinline]] static void find(Form& form, Step<Form>& step, Hit& hit) {
+    auto& ws = form.ws;
+    for (int g = 0; g < ws.guard.n_gaps; ++g) {
+      const int c = ws.guard.gap[g];
+      for (int side = -1; side <= 1; side += 2) {
+        const double s = gap_crossing(form, step, c, side, hit.s);
+        hit.take(s, c, side);
+      }
+    }
+  }
+  template <class Form, class T = typename Form::Scalar>
+  static T at(Form& form, Step<Form>&, const Hit& hit, double, const T* y, int&) {
+    const Workspace<T>& ws = form.ws;
+    return T(hit.who) * (stop_end(ws, hit.index, hit.who) - y[form.nz() + place_of(ws, hit.index)]);
+  }
+  template <class Form, class T = typename Form::Scalar>
+  static double scale(Form& form, const Hit& hit, const T* y) {
+    return larger(1e-3, abs(value(y[form.nz() + place_of(form.ws, hit.index)])));
+  }
+  template <class Form, class T = typename Form::Scalar>
+  static bool rate(Form& form, const Hit& hit, const T* velocity, double& slope) {
+    slope = -hit.who * value(velocity[form.nz() + place_of(form.ws, hit.index)]);
+    return true;
+  }
+  /// The position is at the end.
+  template <class Form>
+  static void arrive(Form& form, Step<Form>& step, const Hit& hit) {
+    step.y0()[form.nz() + place_of(form.ws, hit.index)] = stop_end(form.ws, hit.index, hit.who);
+  }
+  template <class Phase>
+  static void settle(Phase& phase, const Hit& hit) {
+    phase.decide(Cause::impact, hit.index);
+  }
+};
 
 }  // namespace clutchwork

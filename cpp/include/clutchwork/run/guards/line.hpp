@@ -1,0 +1,171 @@
+#pragma once
+#include <clutchwork/components/pieces.hpp>
+#include <clutchwork/motion/dynamics.hpp>
+#include <clutchwork/run/event.hpp>
+#include <clutchwork/run/guards/inputs.hpp>
+#include <clutchwork/run/hit.hpp>
+#include <clutchwork/run/integrator/memory.hpp>
+#include <clutchwork/run/locate.hpp>
+#include <clutchwork/run/passive_events.hpp>
+#include <clutchwork/workspace.hpp>
+
+/// Guards that are linear in the state. docs/theory/events.md
+namespace clutchwork {
+
+/// First crossing of a guard that is linear in the state, before `limit`; -1: none.
+template <class Form>
+double line_crossing(Form& form, Step<Form>& step, const LineGuard& guard, double g0, double g1, double noise,
+                     double limit) {
+  using T = typename Form::Scalar;
+  Workspace<T>& ws = form.ws;
+  fit(form, step);
+  const int k = guard.branch;
+  auto at = [&](double s) {
+    interpolate(form, step, s, step.point());
+    inputs_at(ws, step.t + s * step.h);
+    return guard.sign * (value(form.rate(k, step.point()) + offset_rate(ws, k)) - guard.level);
+  };
+  if (rates_bend(ws)) return first_crossing(at, g0, g1, limit);
+  // Bernstein coefficients of the quartic
+  const double q0 = guard.sign * value(form.rate(k, step.p(0))), q1 = guard.sign * value(form.rate(k, step.p(1))),
+               q2 = guard.sign * value(form.rate(k, step.p(2)));
+  const double a1 = g1 - g0 + q0, a2 = q1 - q0, a3 = q2 - q1;
+  // a guard that starts on its surface must leave it as the motion does, not as the interpolant does
+  // docs/theory/events.md, rule 3
+  const bool fresh = abs(g0) <= 1e3 * noise;
+  const double leaving = guard.sign * step.h * value(ws.here.slope[k]);
+  const double mend = fresh && leaving * a1 <= 0 ? leaving - a1 : 0.0;
+  double b[5] = {larger(g0, 0.0), g0 + (a1 + mend) / 4, g0 + a1 / 2 + a2 / 6, g0 + 0.75 * a1 + a2 / 2 + a3 / 4, g1};
+  double scale = 0;
+  for (double x : b) scale = larger(scale, abs(x));
+  double low = 0, high = 1;
+  if (!first_bracket(b, larger(1e-9 * scale, noise), 40, g1 < (fresh ? -noise : 0.0), low, high)) return -1;
+  const double start = larger(g0, 0.0);
+  auto poly = [&](double s) {
+    const double r = 1 - s;
+    return r * start + s * (g1 + r * (q0 + s * (q1 + s * q2) + r * r * mend));
+  };
+  const double f_low = larger(poly(low), 0.0), f_high = poly(high);
+  if (f_high >= 0) return high;
+  const double s = locate(poly, low, f_low, high, f_high);
+  return s <= limit ? s : -1;
+}
+
+/// Whether a cubic through values and slopes proves that branch k stays on its side of a level; its distances at both
+/// ends.
+template <class T>
+CLUTCHWORK_INLINE Truth<T> stays_clear(const Workspace<T>& ws, int k, Real<T> sign, Real<T> level, Real<T> h,
+                                       Real<T> noise, Real<T>& g0, Real<T>& g1) {
+  const auto &e0 = ws.here, &e1 = ws.there;
+  g0 = sign * (value(e0.rate[k]) - level), g1 = sign * (value(e1.rate[k]) - level);
+  // a start behind the surface, within what counts as zero, is on it: docs/theory/events.md, rule 4
+  const Real<T> shift = select(g0 < 0, smaller(-g0, 1e3 * noise), Real<T>(0));
+  g0 += shift, g1 += shift;
+  const Real<T> c0 = g0 + sign * h * value(e0.slope[k]) / 3, c1 = g1 - sign * h * value(e1.slope[k]) / 3;
+  return g1 >= 0 && c0 >= 0 && c1 >= 0;
+}
+
+/// A zero of a line guard beside transmissions, found at s on the interpolant, where the state on their ties has it: by
+/// secants nearby. docs/theory/varying-ratios.md (9)
+template <class Form>
+[[gnu::noinline]] double crossing_on_ties(Form& form, Step<Form>& step, const LineGuard& guard, double noise,
+                                          double s) {
+  constexpr int rounds = 6;
+  constexpr double near = 0.05, apart = 1e-4;
+  auto& ws = form.ws;
+  auto at = [&](double x) {
+    const double t = step.t + x * step.h;
+    interpolate(form, step, x, step.point());
+    observe(form, t, step.point(), step.slope());
+    settle_ties(form, step.point());
+    inputs_at(ws, t);
+    return guard.sign * (value(form.rate(guard.branch, step.point()) + offset_rate(ws, guard.branch)) - guard.level);
+  };
+  double x = s, before = s * (1 - apart), f = at(x), f_before = at(before), best = s, least = abs(f);
+  for (int k = 0; k < rounds && abs(f) > noise; ++k) {
+    const double next = x - f * (x - before) / (f - f_before);
+    if (!(next > 0 && next < 1 && abs(next - s) <= near)) return s;
+    before = x, f_before = f, x = next, f = at(x);
+    if (abs(f) < least) best = x, least = abs(f);
+  }
+  return best;
+}
+
+/// Level of a line guard with its derivatives.
+template <class T>
+T level_of(const Workspace<T>& ws, const LineGuard& guard) {
+  const Branch<T>& b = ws.branch[guard.branch];
+  const int d = b.direction, c = d - int(ws.sys.elements);
+  if (guard.kind == LineGuard::edge) {
+    const int sign = b.law >= 0 ? b.sign : 1, interval = b.piece % (edge_count(ws, d) + 1);
+    return T(sign) * edge_at(ws, d, guard.sign == -sign ? interval : interval - 1);
+  }
+  // one that was forced to slip, or that is driven, is watched at zero
+  const bool own = guard.kind == LineGuard::slip && abs(guard.level) == value(ws.sys.contact_tolerance[c]);
+  return own ? T(guard.sign) * T(ws.sys.contact_tolerance[c]) : T(guard.level);
+}
+
+/// Slips that end, kinks over a rate, reversals, open contacts that pass zero: linear in the state.
+struct LineCrossing {
+  static constexpr const char* name = "line";
+
+  template <class T>
+  static bool watches(const Workspace<T>& ws) {
+    return ws.guard.n_lines > 0;
+  }
+  template <class Form>
+  CLUTCHWORK_INLINE static void find(Form& form, Step<Form>& step, Hit& hit) {
+    auto& ws = form.ws;
+    // round-off of a rate: far below the slip that counts as zero
+    const double noise = 1e-3 * ws.guard.zero;
+    for (int i = 0; i < ws.guard.n_lines; ++i) {
+      const LineGuard& g = ws.guard.line[i];
+      double g0, g1;
+      if (stays_clear(ws, g.branch, g.sign, g.level, step.h, noise, g0, g1)) continue;
+      double s = line_crossing(form, step, g, g0, g1, noise, hit.s);
+      if constexpr (Form::full) {
+        if (ws.ratios.n > 0 && s > 0 && s < 1) s = crossing_on_ties(form, step, g, noise, s);
+      }
+      hit.take(s, i);
+    }
+  }
+  template <class Form, class T = typename Form::Scalar>
+  static T at(Form& form, Step<Form>&, const Hit& hit, double t, const T* y, int&) {
+    const LineGuard& guard = form.ws.guard.line[hit.index];
+    inputs_of(form, t, y);
+    return T(guard.sign) * (form.rate(guard.branch, y) + offset_rate(form.ws, guard.branch) - level_of(form.ws, guard));
+  }
+  template <class Form, class T = typename Form::Scalar>
+  static double scale(Form& form, const Hit& hit, const T* y) {
+    auto& ws = form.ws;
+    double size = form.rate_size(ws.guard.line[hit.index].branch, y);
+    for (int i = 0; i < ws.sys.speeds; ++i) size = larger(size, 0.1 * abs(value(ws.v[i])));
+    return larger(size, 1.0);
+  }
+  /// That of the motion, where nothing else moves it.
+  template <class Form, class T = typename Form::Scalar>
+  static bool rate(Form& form, const Hit& hit, const T* velocity, double& slope) {
+    const LineGuard& guard = form.ws.guard.line[hit.index];
+    slope = guard.sign * value(form.rate(guard.branch, velocity));
+    return form.ws.sys.prescribed == 0;
+  }
+  template <class T>
+  static int component(const Workspace<T>& ws, const Hit& hit) {
+    return ws.branch[ws.guard.line[hit.index].branch].direction;
+  }
+  template <class Phase>
+  static void settle(Phase& phase, const Hit& hit) {
+    auto& ws = phase.ws();
+    const LineGuard& guard = ws.guard.line[hit.index];
+    if (guard.kind == LineGuard::slip)
+      return phase.decide(Cause::slip_zero, ws.branch[guard.branch].direction - int(ws.sys.elements));
+    if (guard.kind == LineGuard::turn) {
+      if (!pass_law(phase.form(), phase.step(), guard.branch, hit.who)) return phase.leave(Status::zeno);
+      return phase.go_on(true);
+    }
+    pass_line(phase.form(), guard);
+    phase.go_on(false);
+  }
+};
+
+}  // namespace clutchwork

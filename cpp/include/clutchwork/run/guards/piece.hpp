@@ -1,0 +1,142 @@
+#pragma once
+#include <clutchwork/components/pieces.hpp>
+#include <clutchwork/motion/dynamics.hpp>
+#include <clutchwork/run/event.hpp>
+#include <clutchwork/run/guards/inputs.hpp>
+#include <clutchwork/run/hit.hpp>
+#include <clutchwork/run/integrator/memory.hpp>
+#include <clutchwork/run/locate.hpp>
+#include <clutchwork/run/passive_events.hpp>
+#include <clutchwork/run/step.hpp>
+#include <clutchwork/workspace.hpp>
+
+/// Ends of the pieces of laws and elements. docs/theory/events.md, rule 12
+namespace clutchwork {
+
+/// Where the law or the element of a branch leaves its piece, -1: not before what was hit; `who` leaves. Branch k has
+/// its rates in the motion, one below zero is at rest.
+template <class Form, class T = typename Form::Scalar>
+[[gnu::noinline]] double piece_end(Form& form, Step<Form>& step, const Branch<T>& b, int k, const Hit& hit, int& who) {
+  Workspace<T>& ws = form.ws;
+  const int nz = form.nz();
+  // round-off of a margin: a state at its limit has not passed it. docs/theory/events.md, rule 12
+  constexpr double noise = 1e-12;
+  const T still[most_ways] = {};
+  auto at_end = [&](double t, const T* y, const T* f, const Edge<T>& edge) {
+    inputs_of(form, t, y);
+    rate_slopes(ws, [&](int j) { return edge.slope[j]; });
+    const T *rate = k < 0 ? still : edge.rate + k, *slope = k < 0 ? still : edge.slope + k;
+    return law_margin(ws, b, rate, slope, y + nz, f + nz, who);
+  };
+  const auto start = at_end(step.t, step.y0(), step.f0(), ws.here);
+  const auto end = at_end(step.t + step.h, step.y1(), step.f1(), ws.there);
+  const double change = abs(value(end.v - start.v));
+  const double drift = step.h * larger(abs(value(start.d[0])), abs(value(end.d[0])));
+  if (smaller(value(start.v), value(end.v)) > larger(change, drift)) return -1;
+  fit(form, step);
+  auto f = [&](double s) {
+    interpolate(form, step, s, step.point());
+    inputs_of(form, step.t + s * step.h, step.point());
+    if (ws.in.n_rate_refs > 0) slopes_in(form, step, s);
+    T rate[most_ways] = {};
+    for (int w = 0; k >= 0 && w < b.ways; ++w) rate[w] = form.rate(k + w, step.point()) + offset_rate(ws, k + w);
+    return noise + value(law_margin(ws, b, rate, still, step.point() + nz, step.f0() + nz, who).v);
+  };
+  const double s = first_crossing(f, noise + value(start.v), noise + value(end.v), hit.s);
+  if (hit.is_after(s)) f(s);
+  return s;
+}
+
+/// The margin of the piece of a branch at (t, y); branch k has its rates in the motion, one below zero is at rest.
+template <class Form, class T = typename Form::Scalar>
+T piece_margin(Form& form, Step<Form>& step, int k, double t, const T* y, int& who) {
+  Workspace<T>& ws = form.ws;
+  const Branch<T>& b = ws.branch[k];
+  inputs_of(form, t, y);
+  T rate[most_ways];
+  const T still[most_ways] = {};
+  for (int w = 0; w < b.ways; ++w) rate[w] = form.rate(k + w, y) + offset_rate(ws, k + w);
+  return law_margin(ws, b, rate, still, y + form.nz(), step.f0() + form.nz(), who).v;
+}
+
+/// Where the laws of compliant contacts and the pieces of elements change.
+struct PieceEnd : OwnScale {
+  static constexpr const char* name = "law";
+
+  template <class T>
+  static bool watches(const Workspace<T>& ws) {
+    return ws.guard.n_switching > 0;
+  }
+  template <class T>
+  static void watch(Workspace<T>& ws) {
+    ws.guard.n_switching = 0;
+    for (int k = 0; k < ws.n_branches; ++k) {
+      if (is_switching(ws.branch[k])) ws.guard.switching[ws.guard.n_switching++] = k;
+    }
+  }
+  template <class Form>
+  [[gnu::noinline]] static void find(Form& form, Step<Form>& step, Hit& hit) {
+    auto& ws = form.ws;
+    for (int i = 0; i < ws.guard.n_switching; ++i) {
+      const int k = ws.guard.switching[i];
+      int who = turned;
+      const double s = piece_end(form, step, ws.branch[k], k, hit, who);
+      hit.take(s, k, who);
+    }
+  }
+  template <class Form, class T = typename Form::Scalar>
+  static T at(Form& form, Step<Form>& step, const Hit& hit, double t, const T* y, int& who) {
+    return piece_margin(form, step, hit.index, t, y, who);
+  }
+  template <class T>
+  static int component(const Workspace<T>& ws, const Hit& hit) {
+    return ws.branch[hit.index].direction;
+  }
+  template <class Phase>
+  static void settle(Phase& phase, const Hit& hit) {
+    if (!pass_law(phase.form(), phase.step(), hit.index, hit.who)) return phase.leave(Status::zeno);
+    phase.go_on(true);
+    phase.limit_step([&] { return collision_step(phase.taken_form(), hit.index); });
+  }
+};
+
+/// Where the capacity of a locked contact bends, for its law is a table over what changes while it holds: up to there
+/// the end of the step says nothing of what it holds. docs/theory/events.md, rule 12
+struct CapacityBend : OwnScale, OfNone {
+  static constexpr const char* name = "bend";
+
+  template <class T>
+  static bool watches(const Workspace<T>& ws) {
+    return ws.guard.n_bending > 0;
+  }
+  template <class T>
+  static void watch(Workspace<T>& ws) {
+    ws.guard.n_bending = 0;
+    for (int c = 0; c < ws.sys.contacts; ++c) {
+      const bool bends = ws.contact.mode[c] == locked && is_settling_law(ws.sys.contact_law[c]);
+      if (bends) ws.guard.bending[ws.guard.n_bending++] = c;
+    }
+  }
+  template <class Form>
+  [[gnu::noinline]] static void find(Form& form, Step<Form>& step, Hit& hit) {
+    auto& ws = form.ws;
+    for (int i = 0; i < ws.guard.n_bending; ++i) {
+      const int c = ws.guard.bending[i];
+      int who = turned;
+      const double s = piece_end(form, step, make_branch(ws, int(ws.sys.elements) + c, forward), -1, hit, who);
+      if (hit.take(s, c, who)) hit.bends = true;
+    }
+  }
+  /// No motion depends on it: it has no derivatives.
+  template <class Form, class T = typename Form::Scalar>
+  static T at(Form&, Step<Form>&, const Hit&, double, const T*, int&) {
+    return T(0);
+  }
+  template <class Phase>
+  static void settle(Phase& phase, const Hit& hit) {
+    if (!pass_bend(phase.ws(), hit.index, hit.who)) return phase.leave(Status::zeno);
+    phase.go_on(false);
+  }
+};
+
+}  // namespace clutchwork

@@ -1,0 +1,99 @@
+#pragma once
+#include <clutchwork/contacts/locked.hpp>
+#include <clutchwork/contacts/sticking.hpp>
+#include <clutchwork/run/event.hpp>
+#include <clutchwork/run/guards/torque_limit.hpp>
+#include <clutchwork/run/guards/torques.hpp>
+#include <clutchwork/run/hit.hpp>
+#include <clutchwork/run/integrator/memory.hpp>
+#include <clutchwork/run/loads.hpp>
+#include <clutchwork/run/locate.hpp>
+#include <clutchwork/workspace.hpp>
+
+/// Where locked contacts that depend on one another break away as a set. docs/theory/events.md
+namespace clutchwork {
+
+/// Where the limit load of a set is reached that has contacts that follow loads: its limit load has kinks where a load
+/// changes its sign. Far from it at both ends, ahead of both and in the middle, it is taken to be far from it in
+/// between.
+template <class Form>
+[[gnu::noinline]] void find_loaded_limit(Form& form, Step<Form>& step, int k, double least, Hit& hit) {
+  auto& ws = form.ws;
+  fit(form, step);
+  auto f = [&](double s) {
+    torques_at(form, step, s);
+    return value(set_room(ws, k, ws.seen.carried, ws.here.noise[0], ws.loads.now));
+  };
+  if (!hit.bends && least >= ample - 1 && f(0.5) >= ample - 1) return;
+  const double s = first_dip(f, value(ws.here.room[k]), value(ws.there.room[k]), hit.s);
+  hit.take(s, k);
+}
+
+/// A dependent set of locked contacts at its limit load.
+struct SetLimit : OwnScale {
+  static constexpr const char* name = "set";
+
+  template <class T>
+  static bool watches(const Workspace<T>& ws) {
+    return ws.held.n_sets > 0;
+  }
+  template <class Form>
+  [[gnu::noinline]] static void find(Form& form, Step<Form>& step, Hit& hit) {
+    using T = typename Form::Scalar;
+    Workspace<T>& ws = form.ws;
+    for (int k = 0; k < ws.held.n_sets; ++k) {
+      const double before = value(ws.here.room[k]), after = value(ws.there.room[k]);
+      const double coming = room_ahead(ws, k, ws.here, step.h), gone = room_ahead(ws, k, ws.there, -step.h);
+      const double change = larger(abs(after - before), larger(before - coming, after - gone));
+      bool bends = false;
+      if (ws.sys.loads > 0 && holds_loads(ws)) {
+        find_loaded_limit(form, step, k, smaller(smaller(before, after), smaller(coming, gone)), hit);
+        continue;
+      }
+      for (int i = ws.held.set_first[k]; i < ws.held.set_first[k + 1]; ++i)
+        bends = bends || load_bends(ws, ws.held.set_member[i]);
+      if (!bends && !hit.bends && smaller(before, after) > change) continue;
+      fit(form, step);
+      auto f = [&](double s) {
+        torques_at(form, step, s);
+        return value(set_room(ws, k, ws.seen.carried, ws.here.noise[0], ws.loads.now));
+      };
+      const double s = first_crossing(f, before, after, hit.s);
+      hit.take(s, k);
+    }
+  }
+  template <class Form, class T = typename Form::Scalar>
+  static T at(Form& form, Step<Form>& step, const Hit& hit, double t, const T* y, int&) {
+    see_torques(form, step, t, y);
+    return set_room(form.ws, hit.index, form.ws.seen.carried, T(0), form.ws.loads.now);
+  }
+  template <class T>
+  static int component(const Workspace<T>& ws, const Hit& hit) {
+    return int(ws.sys.elements) + ws.held.set_member[ws.held.set_first[hit.index]];
+  }
+  /// Its contacts slip the way in which it gives way, seen just behind the limit.
+  template <class Phase, class T = typename Phase::Scalar>
+  static void force(Phase& phase, const Hit& hit) {
+    Workspace<T>& ws = phase.ws();
+    auto& seen = phase.taken_form().ws;
+    torques_at(phase.taken_form(), phase.taken_step(), larger(hit.s, 1e-6));
+    if constexpr (has_tangents<T>) {
+      for (int a = 0; a < ws.held.n; ++a) ws.seen.carried[a] = T(seen.seen.carried[a]);
+      for (int l = 0; l < ws.sys.loads; ++l) ws.loads.now[l] = T(seen.loads.now[l]);
+    }
+    break_set(ws, hit.index, ws.seen.carried);
+  }
+  /// Freewheels at their own limit give way for good.
+  template <class Phase>
+  static void settle(Phase& phase, const Hit& hit) {
+    auto& ws = phase.ws();
+    phase.decide(Cause::torque_limit);
+    if (events_crowd(ws, component(ws, hit))) phase.end(Status::zeno);
+    for (int i = ws.held.set_first[hit.index]; i < ws.held.set_first[hit.index + 1]; ++i) {
+      const int c = ws.held.set_member[i];
+      if (ws.contact.forced[c] == backward && rolls_over(ws, c)) fail(ws, c);
+    }
+  }
+};
+
+}  // namespace clutchwork

@@ -1,0 +1,139 @@
+#pragma once
+#include <clutchwork/components/direction.hpp>
+#include <clutchwork/components/input.hpp>
+#include <clutchwork/contacts/locked.hpp>
+#include <clutchwork/contacts/sticking.hpp>
+#include <clutchwork/run/guards/torques.hpp>
+#include <clutchwork/run/hit.hpp>
+#include <clutchwork/run/integrator/memory.hpp>
+#include <clutchwork/run/loads.hpp>
+#include <clutchwork/run/locate.hpp>
+#include <clutchwork/workspace.hpp>
+
+/// Where a locked contact breaks away. docs/theory/events.md
+namespace clutchwork {
+
+/// Whether a freewheel was hit at the torque at which it gives way, and not where its torque ends.
+template <class T>
+bool rolls_over(const Workspace<T>& ws, int c) {
+  return contact_one_way(ws, c) && value(freewheel_limit(ws, c)) < infinity && value(ws.happened.torque[c]) > 0;
+}
+
+/// Smallest margin of the watched locked contacts at s, and whose it is.
+template <class Form>
+double least_margin(Form& form, Step<Form>& step, double s, const int* watched, int n, int& who) {
+  auto& ws = form.ws;
+  torques_at(form, step, s);
+  double least = infinity;
+  for (int i = 0; i < n; ++i) {
+    const double m = margin_seen(ws, watched[i]);
+    if (m < least) least = m, who = watched[i];
+  }
+  return least;
+}
+
+/// Where the prescribed speeds on both sides of a held contact part; -1: not before `limit`.
+template <class Form>
+double rigid_departure(Form& form, Step<Form>& step, int a, double limit) {
+  auto& ws = form.ws;
+  const int d = int(ws.sys.elements) + ws.held.contact[a];
+  const double zero = ws.guard.zero;
+  auto f = [&](double s) {
+    double slip = 0;
+    for (int p = 0; p < ws.sys.prescribed; ++p) {
+      slip +=
+          value(prescribed_share(ws, d, p)) * value(signal_value(ws, ws.sys.prescribed_input[p], step.t + s * step.h));
+    }
+    return zero - abs(slip);
+  };
+  return first_crossing(f, f(0), f(1), limit);
+}
+
+/// How far a locked contact is from slipping.
+template <class T>
+T distance_from_slip(const Workspace<T>& ws, int c, T torque) {
+  const T capacity = capacity_at(ws, c, torque);
+  const int way = free_way(ws, c);
+  if (way == 0) return capacity - abs(torque);
+  if (way < 0) return capacity - torque;
+  return smaller(torque + capacity, freewheel_limit(ws, c) - torque);
+}
+
+/// A locked contact at its limit, or one whose sides prescribed speeds part.
+struct TorqueLimit {
+  static constexpr const char* name = "multiplier";
+
+  template <class T>
+  static bool watches(const Workspace<T>& ws) {
+    return ws.held.n > 0;
+  }
+  /// Skipped while the margin exceeds what can change in the step.
+  template <class Form>
+  CLUTCHWORK_INLINE static void find(Form& form, Step<Form>& step, Hit& hit) {
+    auto& ws = form.ws;
+    int* watched = ws.guard.limit;
+    int n = 0;
+    double m0 = infinity, m1 = infinity;
+    for (int a = 0; a < ws.held.n; ++a) {
+      if (is_rigid(ws, ws.held.contact[a])) {
+        const double s = rigid_departure(form, step, a, hit.s);
+        if (hit.take(s, a)) fit(form, step);
+        continue;
+      }
+      if (ws.held.in_set[a] != 0) continue;
+      double before, after;
+      const bool holds = holds_on(ws, a, step.h, before, after);
+      // up to where a capacity bends, the end of the step says nothing
+      if (holds && !hit.bends) continue;
+      watched[n++] = a;
+      m0 = smaller(m0, before + more_noise(ws, a, ws.here.capacity[a]));
+      m1 = smaller(m1, after + more_noise(ws, a, ws.there.capacity[a]));
+    }
+    if (n == 0) return;
+    fit(form, step);
+    int who = watched[0];
+    auto f = [&](double s) { return least_margin(form, step, s, watched, n, who); };
+    const double s = first_crossing(f, m0, m1, hit.s);
+    if (!hit.is_after(s)) return;
+    // where several are at their limits at once, the first that goes beyond
+    double beyond = f(s);
+    const int at_limit = who;
+    for (int k = 12; k > 0 && beyond >= 0; --k) beyond = f(s + (hit.s - s) / (1 << k));
+    torques_at(form, step, s);
+    if (margin_seen(ws, who) > 1e-6 * value(capacity_at(ws, ws.held.contact[who], ws.seen.carried[who])))
+      who = at_limit;
+    // what round-off alone has kept from the start of the run is at the start
+    const bool kept = ws.statistics.steps <= 1 && s * step.h <= 1e-14 * (1 + abs(step.t));
+    hit.take(kept ? 0.0 : s, who);
+  }
+  template <class Form, class T = typename Form::Scalar>
+  static T at(Form& form, Step<Form>& step, const Hit& hit, double t, const T* y, int&) {
+    Workspace<T>& ws = form.ws;
+    const int c = ws.held.contact[hit.index];
+    if (is_rigid(ws, c)) return abs(rate_at(form, int(ws.sys.elements) + c, t, y));
+    see_torques(form, step, t, y);
+    return distance_from_slip(ws, c, ws.seen.carried[hit.index]);
+  }
+  template <class Form, class T = typename Form::Scalar>
+  static double scale(Form& form, const Hit& hit, const T*) {
+    return larger(abs(value(form.ws.seen.carried[hit.index])), 1e-3 * torque_size(form.ws));
+  }
+  template <class T>
+  static int component(const Workspace<T>& ws, const Hit& hit) {
+    return int(ws.sys.elements) + ws.held.contact[hit.index];
+  }
+  /// It slips against its torque; a freewheel overruns, or gives way for good. docs/theory/contacts.md, rule 4
+  template <class Phase>
+  static void settle(Phase& phase, const Hit& hit) {
+    auto& ws = phase.ws();
+    const int c = ws.held.contact[hit.index];
+    phase.decide(Cause::torque_limit, c);
+    if (rolls_over(ws, c)) return fail(ws, c);
+    if (is_rigid(ws, c)) return;
+    const double pull = hit.s > 0 ? value(ws.happened.torque[c]) : value(ws.there.multiplier[hit.index]);
+    const int way = free_way(ws, c);
+    ws.contact.forced[c] = way != 0 ? way : pull > 0 ? backward : forward;
+  }
+};
+
+}  // namespace clutchwork
