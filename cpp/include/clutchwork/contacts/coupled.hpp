@@ -1,7 +1,6 @@
 #pragma once
-#include <clutchwork/components/bound.hpp>
 #include <clutchwork/components/dense.hpp>
-#include <clutchwork/workspace/settings.hpp>
+#include <clutchwork/workspace/loads.hpp>
 #include <cstdint>
 
 /// Torques of contacts at rest and in slip where some of them follow loads that all of them make:
@@ -9,30 +8,11 @@
 namespace clutchwork {
 
 /// One problem of n contacts. Each sticks, or slips with the torque of one of its bounds; that of a contact which
-/// follows a load is a line over the load. Views into memory of the caller.
+/// follows a load is a line over the load.
 template <class T>
-struct CoupledProblem {
+struct CoupledProblem : CoupledMemory<T> {
+  using CoupledMemory<T>::bound, CoupledMemory<T>::load;
   int n = 0, loads = 0;
-  T* mobility = nullptr;  ///< n x n: slip accelerations by torques
-  T* gradient = nullptr;  ///< n: slip accelerations without these torques
-  T* weight = nullptr;    ///< n: a little mobility of its own, so that torques of dependent contacts are unique
-  T *lower = nullptr, *upper = nullptr;  ///< n, of those without load
-  int* load = nullptr;                   ///< n: number of its load, -1: none
-  int* sliding = nullptr;                ///< n: 1 forward, -1 backward: it slips already, 0: it may stick
-  T* reach = nullptr;                    ///< loads x n: load by the torques
-  T* given = nullptr;                    ///< loads: without these torques
-  Bound<T>* bound = nullptr;             ///< loads x 2: against slip backward, then forward
-
-  // the solution
-  T* x = nullptr;        ///< n: torques
-  T* slope = nullptr;    ///< n: slip accelerations
-  T* now = nullptr;      ///< loads
-  int* state = nullptr;  ///< n: 0 sticks, 1 slips forward, -1 backward
-  int* line = nullptr;   ///< n: of the bound that it slips with
-  T* matrix = nullptr;   ///< n x n
-  T* trial = nullptr;    ///< n
-  int* pivot = nullptr;  ///< n
-  int* next = nullptr;   ///< 2 n: what state and line change to
 
   const Bound<T>& against(int k, int direction) const { return bound[2 * load[k] + (direction > 0 ? 1 : 0)]; }
 };

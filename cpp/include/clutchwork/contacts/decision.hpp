@@ -148,14 +148,16 @@ bool overruns(const Workspace<T>& ws, const BoundedProblem<T>& p, int a) {
   return value(p.slope[a]) * free_way(ws, ws.decision.list[a]) < 0;
 }
 
-/// Of the bound torques that cannot hold, the first of a freewheel, else the one that gives way most (-1: all hold).
-/// Candidates on the way are locked. docs/theory/contacts.md, rule 1
+/// Of the bound torques that cannot hold and follow no load, the first of a freewheel, else the one that gives way most
+/// (-1: all hold). Candidates on the way are locked. docs/theory/contacts.md, rule 1
 template <class T>
 int weakest(Workspace<T>& ws, const BoundedProblem<T>& p, int located, double tolerance) {
   int first = -1;
   double most = 0;
   for (int a = 0; a < p.n; ++a) {
-    ws.contact.mode[ws.decision.list[a]] = locked;
+    const int c = ws.decision.list[a];
+    if (ws.loads.of[c] >= 0) continue;
+    ws.contact.mode[c] = locked;
     const double acceleration = abs(value(p.slope[a]));
     if (p.bound[a] == 0 || acceleration <= slope_noise(ws, p, a, located, tolerance)) continue;
     if (overruns(ws, p, a)) return a;
@@ -194,7 +196,6 @@ int turned_back(Workspace<T>& ws, const BoundedProblem<T>& p) {
 template <class T>
 CoupledProblem<T> pose_coupled(Workspace<T>& ws, BoundedProblem<T>& p) {
   const auto& sys = ws.sys;
-  CoupledMemory<T>& m = ws.coupled;
   int *list = ws.decision.list, n = 0;
   auto follows = [&](int c) { return ws.loads.of[c] >= 0; };
   auto slips = [&](int c) { return follows(c) && !ws.decision.candidate[c] && ws.contact.mode[c] != open; };
@@ -204,9 +205,7 @@ CoupledProblem<T> pose_coupled(Workspace<T>& ws, BoundedProblem<T>& p) {
   // free_motion leaves the loads without these torques in coupled.given
   free_motion(ws, ws.decision.candidate, ws.decision.motion);
   p = gather(ws, list, n);
-  CoupledProblem<T> q{n,      int(sys.loads), m.mobility, m.gradient, m.weight, m.lower, m.upper,
-                      m.load, m.sliding,      m.reach,    m.given,    m.bound,  m.x,     m.slope,
-                      m.now,  m.state,        m.line,     m.matrix,   m.trial,  m.pivot, m.next};
+  CoupledProblem<T> q{ws.coupled, n, int(sys.loads)};
   for (int a = 0; a < n; ++a) {
     const int c = list[a];
     const bool rigid = is_rigid(ws, c);
@@ -252,26 +251,6 @@ void take_solution(Workspace<T>& ws, const CoupledProblem<T>& q, BoundedProblem<
     ws.decision.torque[c] = q.x[a];
     if (rigid) p.matrix.diagonal[a] = T(1e-300);
   }
-}
-
-/// Of the candidates without load at a bound the one that gives way most, as `weakest`.
-template <class T>
-int weakest_beside(Workspace<T>& ws, const BoundedProblem<T>& p, const CoupledProblem<T>& q, int located,
-                   double tolerance) {
-  int first = -1;
-  double most = 0;
-  for (int a = 0; a < p.n; ++a) {
-    const int c = ws.decision.list[a];
-    if (ws.loads.of[c] >= 0) continue;
-    ws.contact.mode[c] = locked;
-    const double acceleration = abs(value(p.slope[a]));
-    if (p.bound[a] == 0 || acceleration <= slope_noise(ws, p, a, located, tolerance)) continue;
-    if (overruns(ws, p, a)) return a;
-    const double size = acceleration / value(sqrt(p.matrix.diagonal[a]));
-    if (size > most) first = a, most = size;
-  }
-  (void)q;
-  return first;
 }
 
 /// Of the candidates that follow loads and let go one that still moves within its own tolerance (-1: none).
@@ -360,7 +339,7 @@ bool holds_alone(const Workspace<T>& ws, int a) {
 template <class T>
 bool hold_together(Workspace<T>& ws, double tolerance) {
   const auto& sys = ws.sys;
-  int *candidate = ws.decision.candidate, *before = ws.coupled.next;
+  int *candidate = ws.decision.candidate, *before = ws.decision.before;
   for (int l = 0; l < sys.loads; ++l) {
     if (!candidate[sys.load_contact[l]]) return false;
   }
@@ -402,78 +381,69 @@ bool has_parted(const Workspace<T>& ws, int located) {
   return located >= 0 && ws.happened.cause == Cause::torque_limit && ws.contact.forced[located] == 0;
 }
 
-/// As settle_contacts where contacts follow loads: torques, loads and modes are found together.
+/// Torques of the candidates, and of what slips and follows loads. False: they were not found.
 /// docs/theory/load-dependent.md, rule 2
 template <class T>
-Verdict settle_coupled(Workspace<T>& ws, int located, double tolerance) {
-  int *candidate = ws.decision.candidate, *released = ws.decision.released;
-  if (ws.geometry.redundant) {
-    const int jammed = release_driven(ws, tolerance);
-    if (jammed >= 0) return {Settled::jams, jammed};
-    if (!has_parted(ws, located) && hold_together(ws, tolerance)) return {Settled::yes};
-  }
-  for (int round = 0; round <= 4 * ws.sys.contacts + 4; ++round) {
-    BoundedProblem<T> p{};
-    CoupledProblem<T> q = pose_coupled(ws, p);
-    if (!solve(q)) return {Settled::unbalanced, steepest(ws)};
+bool solve_round(Workspace<T>& ws, int round, BoundedProblem<T>& p, CoupledProblem<T>& q) {
+  if (ws.sys.loads > 0) {
+    q = pose_coupled(ws, p);
+    if (!solve(q)) return false;
     take_solution(ws, q, p);
-    const int weak = weakest_beside(ws, p, q, located, tolerance);
-    if (weak >= 0) {
-      const int c = ws.decision.list[weak];
-      if (overruns(ws, p, weak)) return {is_rigid(ws, c) ? Settled::jams : Settled::gives_way, c};
-      release(ws, c, value(p.slope[weak]) > 0 ? forward : backward);
-      candidate[c] = 0;
-      released[c] = released[c] == 0 ? 1 : 2;
-      continue;
-    }
-    const int moving = moving_on(ws, p, q, located, tolerance);
-    if (moving >= 0) {
-      const int c = ws.decision.list[moving];
-      release(ws, c, value(p.slope[moving]) > 0 ? forward : backward);
-      candidate[c] = 0, released[c] = 2;
-      continue;
-    }
-    const int back = turned_back(ws, p);
-    if (back >= 0) {
-      released[back] = -1, candidate[back] = 1;
-      continue;
-    }
-    settle_loads(ws, p, q, located, tolerance);
-    return {Settled::yes};
+    return true;
   }
-  return {Settled::no};
+  // among many contacts a release changes few torques
+  const bool warm = round > 0 && !is_few(ws.sys);
+  p = pose_problem(ws, warm);
+  if (!solve(p, warm)) return false;
+  for (int a = 0; a < p.n; ++a) ws.decision.torque[ws.decision.list[a]] = p.x[a];
+  return true;
+}
+
+/// Candidate a slips; `for_good`: it is not taken back.
+template <class T>
+void let_go(Workspace<T>& ws, const BoundedProblem<T>& p, int a, bool for_good) {
+  const int c = ws.decision.list[a];
+  int& released = ws.decision.released[c];
+  release(ws, c, value(p.slope[a]) > 0 ? forward : backward);
+  ws.decision.candidate[c] = 0;
+  released = for_good || released != 0 ? 2 : 1;
 }
 
 /// Give every contact at zero slip its torque or its direction of slip. `located`: the contact whose guard was hit.
 template <class T>
 Verdict settle_contacts(Workspace<T>& ws, int located) {
   const double tolerance = slip_tolerance(ws);
-  int *candidate = ws.decision.candidate, *released = ws.decision.released;
-  const int jammed = choose_candidates(ws, located, tolerance);
+  const bool coupled = ws.sys.loads > 0;
+  int jammed = choose_candidates(ws, located, tolerance);
+  if (jammed < 0 && coupled && ws.geometry.redundant) {
+    jammed = release_driven(ws, tolerance);
+    if (jammed < 0 && !has_parted(ws, located) && hold_together(ws, tolerance)) return {Settled::yes};
+  }
   if (jammed >= 0) return {Settled::jams, jammed};
-  if (ws.sys.loads > 0) return settle_coupled(ws, located, tolerance);
   // rounds: those at a bound that accelerate start to slip with their kinetic torque
   for (int round = 0; round <= 4 * ws.sys.contacts + 4; ++round) {
-    // among many contacts a release changes few torques
-    const bool warm = round > 0 && !is_few(ws.sys);
-    BoundedProblem<T> p = pose_problem(ws, warm);
-    if (!solve(p, warm)) return {Settled::no};
-    for (int a = 0; a < p.n; ++a) ws.decision.torque[ws.decision.list[a]] = p.x[a];
+    BoundedProblem<T> p{};
+    CoupledProblem<T> q{};
+    if (!solve_round(ws, round, p, q))
+      return coupled ? Verdict{Settled::unbalanced, steepest(ws)} : Verdict{Settled::no};
     const int weak = weakest(ws, p, located, tolerance);
-    if (weak >= 0) {
+    const int moving = coupled && weak < 0 ? moving_on(ws, p, q, located, tolerance) : -1;
+    if (weak >= 0 && overruns(ws, p, weak)) {
       const int c = ws.decision.list[weak];
-      if (overruns(ws, p, weak)) return {is_rigid(ws, c) ? Settled::jams : Settled::gives_way, c};
-      release(ws, c, value(p.slope[weak]) > 0 ? forward : backward);
-      candidate[c] = 0;
-      released[c] = released[c] == 0 ? 1 : 2;
+      return {is_rigid(ws, c) ? Settled::jams : Settled::gives_way, c};
+    }
+    if (weak >= 0 || moving >= 0) {
+      let_go(ws, p, larger(weak, moving), moving >= 0);
       continue;
     }
-    const int driven = unheld(ws, p, tolerance);
+    const int driven = coupled ? -1 : unheld(ws, p, tolerance);
     if (driven >= 0) return {Settled::jams, driven};
     const int back = turned_back(ws, p);
-    if (back < 0) return {Settled::yes};
-    released[back] = -1;
-    candidate[back] = 1;
+    if (back < 0) {
+      if (coupled) settle_loads(ws, p, q, located, tolerance);
+      return {Settled::yes};
+    }
+    ws.decision.released[back] = -1, ws.decision.candidate[back] = 1;
     ws.decision.torque[back] = T(0);
   }
   return {Settled::no};

@@ -173,7 +173,7 @@ template <class T>
 void jump_beside(Workspace<T>& ws, T* x) {
   Ratios<T>& r = ws.ratios;
   const int nv = int(ws.sys.speeds);
-  T *wanted = r.wanted, *taken = r.pull;
+  T *wanted = r.wanted, *taken = r.tied;
   for (int a = 0; a < r.n; ++a) {
     const int d = first_of(ws, a);
     wanted[a] = T(0);

@@ -18,7 +18,7 @@ template <class T>
 bool factor_mobility(Workspace<T>& ws) {
   Held<T>& h = ws.held;
   const Geometry<T>& g = ws.geometry;
-  int *carrier = ws.problem.slot, *row = ws.problem.row, m = 0;
+  int *carrier = h.at, *row = h.row, m = 0;
   const int nc = int(ws.sys.contacts);
   h.near.whole = g.near.whole;
   for (int q = 0; q < nc; ++q) carrier[q] = -1;

@@ -263,7 +263,7 @@ void leave_loads(Workspace<T>& ws) {
   const auto& sys = ws.sys;
   Ratios<T>& r = ws.ratios;
   const int nv = int(sys.speeds), ne = int(sys.elements), np = int(sys.prescribed), nd = ws.n_directions;
-  T *x = ws.decision.speed, *tied = r.pull;
+  T *x = ws.decision.speed, *tied = r.tied;
   for (int l = 0; l < sys.loads; ++l) {
     auto rate = [&](int d) {
       return T(d < ne ? sys.load_element_rate[l * ne + d] : sys.load_contact_rate[l * sys.contacts + d - ne]);

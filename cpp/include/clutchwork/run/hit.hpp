@@ -27,6 +27,12 @@ struct Hit {
   }
 };
 
+/// Whether a margin exceeds what can change in a step of length h, by its values and slopes at both ends.
+template <class R>
+CLUTCHWORK_INLINE auto is_ample(R start, R end, R start_slope, R end_slope, R h) {
+  return smaller(start, end) > larger(abs(end - start), h * larger(abs(start_slope), abs(end_slope)));
+}
+
 /// A guard that has its own scale already, or is a slip.
 struct OwnScale {
   template <class Form, class T = typename Form::Scalar>

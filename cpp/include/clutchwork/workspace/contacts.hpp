@@ -71,6 +71,7 @@ struct Held {
   T* turned = nullptr;                  ///< a right-hand side in the order of the factor
   T *rows = nullptr, *basis = nullptr, *norms = nullptr, *share = nullptr;  ///< of a split of directions
   int *order = nullptr, *all = nullptr, *number = nullptr;                  ///< of the same
+  int *at = nullptr, *row = nullptr;  ///< carrier at each place of the mobility, -1: none; its row in the factor
 
   template <class P, class A>
   static void lay_out(P& p, A& a, const Sizes& n) {
@@ -83,7 +84,7 @@ struct Held {
     a.scratch(p.rhs, nc), a.scratch(p.solved, nc), a.scratch(p.carried, nc), a.scratch(p.motion, n.speeds);
     a.scratch(p.turned, nc), a.scratch(p.rows, nc * nv), a.scratch(p.basis, nv * nv);
     a.scratch(p.norms, nc), a.scratch(p.share, nc);
-    a.take(p.order, nc), a.take(p.all, nc), a.take(p.number, nc);
+    a.take(p.order, nc), a.take(p.all, nc), a.take(p.number, nc), a.take(p.at, nc), a.take(p.row, nc);
   }
 };
 
@@ -136,6 +137,7 @@ struct Decision {
   int* candidate = nullptr;   ///< of each contact: it may stick
   int* released = nullptr;    ///< of each contact: 1 released, -1 taken back, 2 released for good
   int* list = nullptr;        ///< contacts of the problem
+  int* before = nullptr;      ///< of each contact: its mode before all are tried together
   T* motion = nullptr;        ///< mass-weighted acceleration, of each speed
   double effort = 0;          ///< sum of the sizes of what makes it, against which its round-off is measured
   double pull = 0;            ///< the same of the torques alone
@@ -146,7 +148,8 @@ struct Decision {
   template <class P, class A>
   static void lay_out(P& p, A& a, const Sizes& n) {
     a.take(p.candidate, n.contacts), a.take(p.released, n.contacts), a.take(p.list, n.contacts);
-    a.scratch(p.motion, n.speeds), a.scratch(p.torque, n.contacts), a.scratch(p.acceleration, n.contacts);
+    a.take(p.before, n.contacts), a.scratch(p.motion, n.speeds), a.scratch(p.torque, n.contacts),
+        a.scratch(p.acceleration, n.contacts);
     a.scratch(p.speed, n.speeds);
   }
 };

@@ -38,14 +38,31 @@ struct Loads {
   }
 };
 
-/// Memory of the decision where contacts follow loads: contacts/coupled.hpp.
+/// Memory of the decision where contacts follow loads: contacts/coupled.hpp. Of n contacts, and of the loads.
 template <class T>
 struct CoupledMemory {
-  T *mobility = nullptr, *gradient = nullptr, *weight = nullptr, *lower = nullptr, *upper = nullptr;
-  T *reach = nullptr, *given = nullptr, *x = nullptr, *slope = nullptr, *now = nullptr;
-  T *matrix = nullptr, *trial = nullptr;
-  Bound<T>* bound = nullptr;
-  int *load = nullptr, *sliding = nullptr, *state = nullptr, *line = nullptr, *pivot = nullptr, *next = nullptr;
+  T* mobility = nullptr;  ///< n x n: slip accelerations by torques
+  T* gradient = nullptr;  ///< n: slip accelerations without these torques
+  T* weight = nullptr;    ///< n: a little mobility of its own, so that torques of dependent contacts are unique
+  T *lower = nullptr, *upper = nullptr;  ///< n, of those without load
+  int* load = nullptr;                   ///< n: number of its load, -1: none
+  int* sliding = nullptr;                ///< n: 1 forward, -1 backward: it slips already, 0: it may stick
+  T* reach = nullptr;                    ///< loads x n: load by the torques
+  T* given = nullptr;                    ///< loads: without these torques
+  Bound<T>* bound = nullptr;             ///< loads x 2: against slip backward, then forward
+
+  // the solution
+  T* x = nullptr;        ///< n: torques
+  T* slope = nullptr;    ///< n: slip accelerations
+  T* now = nullptr;      ///< loads
+  int* state = nullptr;  ///< n: 0 sticks, 1 slips forward, -1 backward
+  int* line = nullptr;   ///< n: of the bound that it slips with
+
+  // scratch
+  T* matrix = nullptr;   ///< n x n
+  T* trial = nullptr;    ///< n
+  int* pivot = nullptr;  ///< n
+  int* next = nullptr;   ///< 2 n: what state and line change to
 
   template <class P, class A>
   static void lay_out(P& p, A& a, const Sizes& n) {

@@ -49,6 +49,7 @@ struct Ratios {
   T* via = nullptr;     ///< directions x n: share of the row of a transmission that was taken off a direction
   T* whole = nullptr;   ///< mobility of each direction before the span was taken off
   T* part = nullptr;    ///< directions x n: parts of a direction along the span
+  T* tied = nullptr;    ///< n, scratch: what the rows of a motion miss, or its parts along the span
   bool inside = false;  ///< a decision is made
   int jammed = -1;      ///< transmission that nothing can keep at its ratio, -1: none
 
@@ -71,7 +72,7 @@ struct Ratios {
     a.take(p.value, n), a.take(p.before, n), a.take(p.pull, n), a.scratch(p.wanted, n), a.take(p.torque, n);
     a.scratch(p.present, n), a.scratch(p.turned, n), a.scratch(p.sorted, n);
     a.scratch(p.row, n * nv), a.take(p.order, n), a.scratch(p.span, n * nv), a.scratch(p.triangle, n * n);
-    a.scratch(p.share, n), a.scratch(p.drawn, n);
+    a.scratch(p.share, n), a.scratch(p.drawn, n), a.scratch(p.tied, n);
     Compressed<T>::lay_out(p.white, a, nd, nd * nv), a.scratch(p.own, nd), a.scratch(p.whole, nd);
     a.scratch(p.mobility, nc * (nc + 1) / 2), a.scratch(p.via, nd * n), a.scratch(p.part, nd * n);
     a.take(p.place, rows), a.take(p.tie, n + nc), a.take(p.column, n);

@@ -26,8 +26,7 @@ struct LineFlip {
     for (int i = 0; i < ws.loads.n_sliding; ++i) {
       const int l = ws.loads.sliding[i], k = ws.loads.branch[i];
       const double start = value(ws.here.clearance[l]), end = value(ws.there.clearance[l]);
-      const double drift = step.h * larger(abs(value(ws.here.closing[l])), abs(value(ws.there.closing[l])));
-      if (smaller(start, end) > larger(abs(end - start), drift)) continue;
+      if (is_ample(start, end, value(ws.here.closing[l]), value(ws.there.closing[l]), step.h)) continue;
       fit(form, step);
       const double noise = 1e-12 * torque_size(ws);
       auto f = [&](double s) {

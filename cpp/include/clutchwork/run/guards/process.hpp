@@ -42,9 +42,7 @@ struct ProcessEnd : OwnScale, OfNone {
       };
       const auto start = at_end(step.t, step.y0(), step.f0(), ws.here);
       const auto end = at_end(step.t + step.h, step.y1(), step.f1(), ws.there);
-      const double change = abs(value(end.v - start.v));
-      const double drift = step.h * larger(abs(value(start.d[0])), abs(value(end.d[0])));
-      if (smaller(value(start.v), value(end.v)) > larger(change, drift)) continue;
+      if (is_ample(value(start.v), value(end.v), value(start.d[0]), value(end.d[0]), step.h)) continue;
       fit(form, step);
       auto f = [&](double s) {
         const double t = step.t + s * step.h;
