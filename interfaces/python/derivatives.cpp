@@ -248,7 +248,10 @@ NB_MODULE(_derivatives, m) {
   m.attr("schema") = clutchwork::schema_text;
   m.attr("layout") = clutchwork::layout_text;
   nb::list guards;
-  for (int i = 0; const char* name = clutchwork::GuardList::name(i); ++i) guards.append(name);
+  constexpr const char* effects[] = {"decides", "next piece", "other"};
+  for (int i = 0; i < clutchwork::GuardList::count; ++i) {
+    guards.append(nb::make_tuple(clutchwork::GuardList::name[i], effects[int(clutchwork::GuardList::effect[i])]));
+  }
   m.attr("guards") = nb::tuple(guards);
   m.def("supported", &cw_tangents_supported, "Whether it was compiled for the processor of this machine.");
   nb::class_<Adjoint>(m, "Adjoint")

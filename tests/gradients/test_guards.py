@@ -18,9 +18,9 @@ from clutchwork.gradients.runs import Runs
 from support import by_differences
 from support.amount import amount
 
-GUARDS: tuple[str, ...] = derivatives().guards
-# no event, and one that ends the run
-WITHOUT = {"nothing", "exit"}
+GUARDS: tuple[str, ...] = tuple(name for name, _ in derivatives().guards)
+# one that touches no motion, and one that ends the run
+WITHOUT = {"bend", "exit"}
 COULOMB = cw.Coulomb(static=0.12, kinetic=0.1)
 TIGHT = {"rtol": 1e-12, "atol": 1e-14}
 Model = tuple[cw.Driveline, tuple[str, ...], float]

@@ -6,6 +6,7 @@ docs/theory/gradients.md (6)
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
+from functools import cache
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -13,6 +14,7 @@ from numpy.typing import NDArray
 
 from clutchwork.assembly.wiring import HOUSING, wiring
 from clutchwork.base.memoize import memoize
+from clutchwork.declare.core import derivatives
 from clutchwork.declare.layout import CAUSES, EVENT
 from clutchwork.results.forms import LOCKED
 
@@ -30,20 +32,24 @@ ONE_INSTANT = 1e-9
 # times of a guard and of its event that differ by less are one, of a second or of their size
 SAME = 1e-12
 TIME, KIND, COMPONENT, INDEX, DIFFERENCE = range(5)
-# pieces of laws and processes, and how slowly one is entered that is said [1/s]
-PIECES, TOUCHED = (6, 9), 1e-5
+# how slowly a piece of a law or a process is entered that is said [1/s]
+TOUCHED = 1e-5
 # so many changes within so long [s] are refused
 CROWD, CROWDED = 6, 1e-4
-# kinds of guards that decide about contacts, by their numbers in the core: slips, capacities, sets, spares, loads
-DECIDED = (1, 2, 3, 4, 5)
 BY_NAME = {name: number for number, (name, _) in CAUSES.items()}
 IMPACT, DRIVEN = BY_NAME["impact"], (BY_NAME["input"], BY_NAME["other event"])
 AT = {name: column for column, (name, _) in enumerate(EVENT)}
 
 
+@cache
+def guards(effect: str) -> tuple[int, ...]:
+    """Numbers in the core of the guards with an effect: "decides" about contacts, or takes to the "next piece"."""
+    return tuple(number for number, (_, found) in enumerate(derivatives().guards) if found == effect)
+
+
 def together(grazes: Array) -> bool:
     """Whether two guards that decide about contacts are hit at one instant."""
-    times = np.sort(grazes[np.isin(grazes[:, KIND], DECIDED), TIME])
+    times = np.sort(grazes[np.isin(grazes[:, KIND], guards("decides")), TIME])
     return bool(np.any(np.diff(times) <= ONE_INSTANT * (1.0 + np.abs(times[1:]))))
 
 
@@ -54,7 +60,7 @@ def decided(grazes: Array, events: Array) -> Array:
     as it was, or jumps by less the slower it is.
     """
     changed = events[events[:, AT["from"]] != events[:, AT["to"]], AT["time"]]
-    known = grazes[[kind in DECIDED for kind in grazes[:, KIND].tolist()]]
+    known = grazes[np.isin(grazes[:, KIND], guards("decides"))]
     there = np.abs(known[:, TIME, None] - changed) <= SAME * (1.0 + np.abs(changed))
     found: Array = known[there.any(axis=1)]
     return found
@@ -173,7 +179,7 @@ def noted(system: System, grazes: Array, decided: Array) -> Iterator[str]:
     Parameters: decided, those of the grazes that are.
     """
     for graze in grazes[grazes[:, INDEX] < TOUCHED]:
-        if graze[KIND] not in PIECES:
+        if graze[KIND] not in guards("next piece"):
             continue
         name = component(system, int(graze[COMPONENT]), int(graze[KIND]))
         measure = f"abs(dg/dt)/scale = {graze[INDEX]:.2g} 1/s, below {TOUCHED:g} 1/s"

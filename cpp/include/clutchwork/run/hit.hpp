@@ -27,6 +27,9 @@ struct Hit {
   }
 };
 
+/// What a guard does: it decides about contacts, takes a law or a process to its next piece, or neither.
+enum class Effect { decides, next_piece, other };
+
 /// Whether a margin exceeds what can change in a step of length h, by its values and slopes at both ends.
 template <class R>
 CLUTCHWORK_INLINE auto is_ample(R start, R end, R start_slope, R end_slope, R h) {

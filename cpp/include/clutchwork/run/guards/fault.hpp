@@ -13,6 +13,7 @@ namespace clutchwork {
 /// Where a contact fails.
 struct Failure : OwnScale, OfContact {
   static constexpr const char* name = "fault";
+  static constexpr Effect effect = Effect::other;
 
   template <class T>
   static bool watches(const Workspace<T>& ws) {

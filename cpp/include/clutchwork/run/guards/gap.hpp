@@ -70,6 +70,7 @@ double gap_crossing(Form& form, Step<Form>& step, int c, int side, double limit)
 /// Where a stop that is open meets an end.
 struct GapEnd : OfContact {
   static constexpr const char* name = "gap";
+  static constexpr Effect effect = Effect::other;
 
   template <class T>
   static bool watches(const Workspace<T>& ws) {

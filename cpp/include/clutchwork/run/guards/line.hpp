@@ -108,6 +108,7 @@ T level_of(const Workspace<T>& ws, const LineGuard& guard) {
 /// Slips that end, kinks over a rate, reversals, open contacts that pass zero: linear in the state.
 struct LineCrossing {
   static constexpr const char* name = "line";
+  static constexpr Effect effect = Effect::decides;
 
   template <class T>
   static bool watches(const Workspace<T>& ws) {

@@ -16,7 +16,8 @@
 
 /// Everything that may happen inside a step: docs/theory/events.md.
 ///
-/// A guard says whether it watches anything in the present modes, where in a step it is first, and what happens then
+/// A guard has a name and an effect, for whoever reads of it. It says whether it watches anything in the present modes,
+/// where in a step it is first, and what happens then
 /// (`settle`). For derivatives it says how it follows from time and state (`at`: zero at the event), over what size it
 /// is measured (`scale`) and whose it is (`component`). It may list what it watches where modes begin (`watch`), take
 /// the state to where it was hit (`arrive`), and know its time derivative (`rate`).
@@ -38,11 +39,9 @@ struct Guarded {
     int i = 0;
     ((i++ == place ? f(Tag<G>{}) : void()), ...);
   }
-  /// What the caller of a run with derivatives knows it by; null behind the last one.
-  static constexpr const char* name(int place) {
-    constexpr const char* names[] = {G::name..., nullptr};
-    return names[place];
-  }
+  // what the caller of a run with derivatives knows them by, and what they do
+  static constexpr const char* name[] = {G::name...};
+  static constexpr Effect effect[] = {G::effect...};
 };
 
 // those that cut a step first spare the later ones work; a bend stands before what it bends

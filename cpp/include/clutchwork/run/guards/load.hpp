@@ -22,6 +22,7 @@ void list_near_loads(Workspace<T>& ws, double h) {
 /// Where the load of a contact passes zero.
 struct LoadZero : OfContact {
   static constexpr const char* name = "load";
+  static constexpr Effect effect = Effect::decides;
 
   template <class T>
   static bool watches(const Workspace<T>& ws) {

@@ -46,6 +46,7 @@ void find_parting_beside(Form& form, Step<Form>& step, Hit& hit) {
 /// Where prescribed speeds part what locked contacts hold together. docs/theory/events.md, rule 11
 struct Parting : OwnScale {
   static constexpr const char* name = "parting";
+  static constexpr Effect effect = Effect::decides;
 
   template <class T>
   static bool watches(const Workspace<T>& ws) {

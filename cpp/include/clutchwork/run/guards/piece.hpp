@@ -60,6 +60,7 @@ T piece_margin(Form& form, Step<Form>& step, int k, double t, const T* y, int& w
 /// Where the laws of compliant contacts and the pieces of elements change.
 struct PieceEnd : OwnScale {
   static constexpr const char* name = "law";
+  static constexpr Effect effect = Effect::next_piece;
 
   template <class T>
   static bool watches(const Workspace<T>& ws) {
@@ -102,6 +103,7 @@ struct PieceEnd : OwnScale {
 /// the end of the step says nothing of what it holds. docs/theory/events.md, rule 12
 struct CapacityBend : OwnScale, OfNone {
   static constexpr const char* name = "bend";
+  static constexpr Effect effect = Effect::other;
 
   template <class T>
   static bool watches(const Workspace<T>& ws) {

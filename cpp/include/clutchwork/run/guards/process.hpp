@@ -14,6 +14,7 @@ namespace clutchwork {
 /// Where processes and flows leave their pieces.
 struct ProcessEnd : OwnScale, OfNone {
   static constexpr const char* name = "process";
+  static constexpr Effect effect = Effect::next_piece;
 
   template <class T>
   static bool watches(const Workspace<T>& ws) {

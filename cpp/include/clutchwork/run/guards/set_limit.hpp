@@ -32,6 +32,7 @@ template <class Form>
 /// A dependent set of locked contacts at its limit load.
 struct SetLimit : OwnScale {
   static constexpr const char* name = "set";
+  static constexpr Effect effect = Effect::decides;
 
   template <class T>
   static bool watches(const Workspace<T>& ws) {

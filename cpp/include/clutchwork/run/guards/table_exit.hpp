@@ -12,6 +12,7 @@ namespace clutchwork {
 /// Where the law of a contact, locked or not, leaves a table that may not be left: the run ends there.
 struct TableExit : OwnScale, OfContact {
   static constexpr const char* name = "exit";
+  static constexpr Effect effect = Effect::other;
 
   template <class T>
   static bool watches(const Workspace<T>& ws) {

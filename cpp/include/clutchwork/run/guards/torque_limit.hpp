@@ -62,6 +62,7 @@ T distance_from_slip(const Workspace<T>& ws, int c, T torque) {
 /// A locked contact at its limit, or one whose sides prescribed speeds part.
 struct TorqueLimit {
   static constexpr const char* name = "multiplier";
+  static constexpr Effect effect = Effect::decides;
 
   template <class T>
   static bool watches(const Workspace<T>& ws) {
