@@ -10,10 +10,11 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
+from clutchwork.assembly.provenance import parameter
 from clutchwork.base.classes import dataclass
 from clutchwork.base.errors import ModelError
 from clutchwork.gradients.finite_differences import Bent, Rebuilt, slope
-from clutchwork.gradients.system_words import WordStructure, finite, made, with_masses, words_made, words_of
+from clutchwork.gradients.system_words import WordStructure, finite, made, words_made, words_of
 from clutchwork.results.gradient import NoGradient
 
 if TYPE_CHECKING:
@@ -47,8 +48,7 @@ class Assembled:
         """The words for values of the numbers; None where the structure is another one there."""
         if np.array_equal(x, self.start):
             return self.structure.words
-        quick = with_masses(self.system, self.parameters, x)
-        found = words_of(self._system(x)) if quick is None else quick
+        found = words_of(self._system(x))
         return found if self.structure.is_that_of(found) else None
 
     def _system(self, x: Array) -> System:
@@ -67,6 +67,7 @@ class Assembled:
         for group in self._groups:
             key = x[group].tobytes()
             known = self._known.get((group[0], STRAIGHT), self._known.get((group[0], key)))
+            known = self._exact(group) if known is None else known
             if known is None:
                 there = there or partial(self._beside, self._pinned(x))
                 try:
@@ -81,6 +82,17 @@ class Assembled:
         if len(self._known) > MOST_KEPT * len(self._groups):
             self._known.clear()
         return columns
+
+    def _exact(self, group: list[int]) -> Array | None:
+        """Derivatives by numbers of which the words are sums; None where they are more."""
+        known, columns = [parameter(self.system, self.parameters[n].field) for n in group], list[Array]()
+        for one in known:
+            if one.derivative is None or one.is_word:
+                return None
+            columns.append(np.zeros(len(self.structure.words)))
+            columns[-1][one.words] = one.derivative
+        self._known[group[0], STRAIGHT] = np.stack(columns, axis=1)
+        return self._known[group[0], STRAIGHT]
 
     @cached_property
     def _groups(self) -> list[list[int]]:

@@ -4,20 +4,17 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from functools import cached_property
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
 
 from clutchwork.base.classes import dataclass
-from clutchwork.declare.node import Signal
 from clutchwork.gradients.parameters import Tunable
-from clutchwork.model.changes import Target, field_of, named, target
 from clutchwork.signals.table import Table
 
 if TYPE_CHECKING:
     from clutchwork.assembly.system import System
-    from clutchwork.sweeps.system_words import SystemLayout
 
 Array = NDArray[np.float64]
 Places = NDArray[np.int64]
@@ -41,30 +38,28 @@ class TableWords:
 
     @classmethod
     def of(
-        cls, system: System, beside: System, layout: SystemLayout, field: str, free: Sequence[tuple[int, Tunable]]
+        cls, system: System, inputs: Sequence[int], free: Sequence[tuple[int, Tunable]]
     ) -> TableWords | None:
-        """The words of a table of a System; None where it is more than a signal of its own.
+        """The words of a table of a System; None where the signal is another one.
 
-        Parameters: beside, the same System with other values in the table; field, the name of its points; free, its
-        parameters with their numbers.
+        Parameters: inputs, numbers of the signals that it is; free, its parameters with their numbers.
         """
-        points, moved = _points(system, field), _points(beside, field)
-        if points is None or moved is None:
+        signal = system.inputs[inputs[0]].signal
+        if type(signal).segments is not Table.segments:
             return None
+        points = np.array([[float(x), float(y)] for x, y in vars(signal)["points"]])
         begins = pieces(points)
-        both = zip(system.inputs, beside.inputs, strict=True)
-        inputs = [i for i, (here, there) in enumerate(both) if _is(here.signal, points) and _is(there.signal, moved)]
-        first = np.array([system.arrays["input_first"][number] for number in inputs], dtype=np.int64)
-        if not inputs or any(system.arrays["input_count"][number] != len(begins) for number in inputs):
+        first = system.arrays["input_first"][list(inputs)].astype(np.int64)
+        if any(system.arrays["input_count"][number] != len(begins) for number in inputs):
             return None
         along = np.zeros((len(free), *points.shape))
         for line, (_, one) in zip(along, free, strict=True):
             for place in one.places:
                 line[place] = 1.0
         rows = (first[:, None] + np.arange(len(begins))).ravel()
-        coef = layout.starts["segment_coef"] // 8 + 12 * rows
-        places = np.concatenate([layout.starts["segment_time"] // 8 + rows, coef, coef + 1])
-        at_start = layout.starts["input_value"] // 8 + np.array(inputs, dtype=np.int64)
+        coef = system.starts["segment_coef"] // 8 + 12 * rows
+        places = np.concatenate([system.starts["segment_time"] // 8 + rows, coef, coef + 1])
+        at_start = system.starts["input_value"] // 8 + np.array(inputs, dtype=np.int64)
         numbers = np.array([number for number, _ in free])
         return cls(points, numbers, along, begins, len(inputs), places, at_start)
 
@@ -107,26 +102,6 @@ class TableWords:
     def _slopes(self, points: Array) -> Array:
         found = derivatives(points, self.along, self.begins)
         return np.repeat(found, self.copies, axis=1).reshape(len(found), -1).T
-
-
-def _points(system: System, field: str) -> Array | None:
-    """The knots of a signal that is a table, None where it is another one."""
-    aim = target(named(system.source), field) if system.source else None
-    if aim is None or len(aim.path) < 2:
-        return None
-    signal, _ = field_of(Target(aim.owner, aim.path[:-1]))
-    return _as_array(signal)
-
-
-def _as_array(signal: Any) -> Array | None:
-    if not isinstance(signal, Signal) or type(signal).segments is not Table.segments:
-        return None
-    return np.array([[float(x), float(y)] for x, y in vars(signal)["points"]])
-
-
-def _is(signal: Signal, points: Array) -> bool:
-    own = _as_array(signal)
-    return own is not None and np.array_equal(own, points)
 
 
 def pieces(points: Array) -> Places:

@@ -3,17 +3,19 @@
 from __future__ import annotations
 
 from bisect import bisect_left
+from collections.abc import Sequence
+from dataclasses import replace
 from functools import cached_property
 from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
+from clutchwork.assembly.provenance import PROBES, parameter
 from clutchwork.base.classes import dataclass
 from clutchwork.base.errors import ModelError
 from clutchwork.gradients.assembled import Assembled
-from clutchwork.gradients.discovery import identity, tables, together
-from clutchwork.gradients.system_words import WordStructure
+from clutchwork.gradients.system_words import WordStructure, words_made
 from clutchwork.gradients.tables import TableWords
 
 if TYPE_CHECKING:
@@ -59,45 +61,53 @@ class Chart:
 
     def words_in(self, name: str) -> tuple[int, int]:
         """The first word of an array of a System, and how many there are."""
-        return self.assembled.structure.layout.starts[name] // 8, self.assembled.system.arrays[name].size
+        return self.assembled.system.starts[name] // 8, self.assembled.system.arrays[name].size
 
     @classmethod
     def of(cls, system: System, parameters: tuple[Tunable, ...], x: Array) -> Chart:
         """Look at how the words of a System, which has these values, follow from them."""
-        structure = WordStructure.of(system)
-        found = ((n, identity(system, structure, one, float(x[n]))) for n, one in enumerate(parameters))
-        scalars = {number: places for number, places in found if places is not None}
-        signals = tuple(tables(system, structure, parameters))
-        for written in (scalars, {}):
-            chart = cls._with(system, structure, parameters, x, written, signals)
-            held = chart.holds(together(system, parameters, x, []))
+        structure, known = WordStructure.of(system), {one.field: parameter(system, one.field) for one in parameters}
+        words, counts = np.unique(np.concatenate([entry.words for entry in known.values()]), return_counts=True)
+        scalars, tables = dict[int, Places](), list[TableWords]()
+        for name, own in known.items():
+            free = [(number, one) for number, one in enumerate(parameters) if one.field == name]
+            # what goes into a word together with others is assembled
+            if np.isin(own.words, words[counts > 1]).any():
+                continue
+            if own.is_word:
+                scalars[free[0][0]] = own.words
+            elif own.is_signal and free[0][1].places:
+                found = TableWords.of(system, own.inputs, free)
+                tables += [found] if found else []
+        for written, signals in ((scalars, tables), ({}, tables)):
+            used = {*written, *(number for table in signals for number in table.numbers.tolist())}
+            bound = [number for number in range(len(x)) if number not in used]
+            rest = Assembled(system, structure, tuple(parameters[number] for number in bound), x[bound])
+            chart = cls(written, tuple(signals), bound, rest, x == 0.0)
             # numbers that are assembled may make another structure
-            if chart.holds(together(system, parameters, x, chart.bound)) if held is None else held:
+            held = (chart._holds(system, parameters, x, fixed) for fixed in ([], bound))
+            if next((one for one in held if one is not None), False):
                 return chart
-        return cls._with(system, structure, parameters, x, {}, ())
+        return replace(chart, tables=(), bound=[*range(len(x))], assembled=Assembled(system, structure, parameters, x))
 
-    @classmethod
-    def _with(
-        cls,
-        system: System,
-        structure: WordStructure,
-        parameters: tuple[Tunable, ...],
-        x: Array,
-        scalars: dict[int, Places],
-        signals: tuple[TableWords, ...],
-    ) -> Chart:
-        written = {*scalars, *(number for table in signals for number in table.numbers)}
-        bound = [number for number in range(len(x)) if number not in written]
-        chosen = tuple(parameters[number] for number in bound)
-        return cls(scalars, signals, bound, Assembled(system, structure, chosen, x[bound]), x == 0.0)
+    def _holds(
+        self, system: System, parameters: Sequence[Tunable], x: Array, fixed: Sequence[int]
+    ) -> bool | None:
+        """Whether the words are right where all numbers but those that are fixed are others, of which some were zero.
 
-    def holds(self, given: tuple[Array, Array]) -> bool | None:
-        """Whether the words at a point are those that are given; None where the structure is another one there."""
-        there, words = given
-        if not len(words) or not self.assembled.structure.is_that_of(words):
-            return None
-        own = self._written(there)
-        return own is not None and own.tobytes() == words.tobytes()
+        None where the structure is another one there.
+        """
+        moves = np.array([_room(one, value) for one, value in zip(parameters, x.tolist(), strict=True)])
+        moves[list(fixed)] = 0.0
+        for there in (x + share * moves for share in PROBES):
+            try:
+                words = words_made(system, parameters, there)
+            except ModelError:
+                continue
+            own = self._written(there)
+            alike = self.assembled.structure.is_that_of(words)
+            return own is not None and own.tobytes() == words.tobytes() if alike else None
+        return None
 
     def words(self, x: Array) -> Array | None:
         """The words at a point; None where the structure may be another one there, or numbers only fit together."""
@@ -139,3 +149,8 @@ class Chart:
         if more is not None:
             matrix[np.searchsorted(places, known)[:, None], self.bound] = more[known]
         return Slopes(places, matrix)
+
+
+def _room(one: Tunable, value: float) -> float:
+    """By how much a number may move without another structure: a knot at 0 stays there."""
+    return min(one.scale, one.reach) * (value != 0.0) if np.isfinite(one.reach) else one.scale

@@ -162,4 +162,4 @@ def unknown(system: System, name: object) -> Problem:
     such = f"signals are such as {', '.join(map(repr, given[:3]))}" if given else ""
     if is_result:
         return Problem(path, "", message, remedy=such)
-    return Problem(path, "", f"{message}{near(path, [*given, *system.parameters], such)}")
+    return Problem(path, "", f"{message}{near(path, [*given, *system.places], such)}")

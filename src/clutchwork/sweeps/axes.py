@@ -119,7 +119,7 @@ class Plan:
 
     def _axis(self, one: Varied, aim: Target) -> Axis:
         spec = _plain_number(aim)
-        if one.name in self.base.parameters and spec is not None:
+        if one.name in self.base.places and spec is not None:
             problems = [found for value in one.values for found in _number_problems(value, spec, aim)]
             if problems:
                 raise ModelError(few(problems), self.base.name)

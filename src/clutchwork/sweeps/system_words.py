@@ -50,7 +50,7 @@ class SystemLayout:
 
     def parameter(self, name: str) -> Places:
         """The word of a parameter that is a plain number."""
-        return np.array([self.starts["params"] // 8 + self.system.parameters[name]], dtype=np.int64)
+        return np.array([self.starts["params"] // 8 + self.system.places[name]], dtype=np.int64)
 
     def words(self, found: Sequence[Sequence[Patch]]) -> tuple[Places, Words]:
         """Words that any of many sets of patches changes, and what each set makes of all of them."""
