@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
+from clutchwork.assembly.during_runs import NOTHING
 from clutchwork.base.errors import Problem
 from clutchwork.base.quote import quote
 from clutchwork.declare.quantity import has_unit
@@ -14,7 +15,7 @@ from clutchwork.declare.schema import Spec, specs
 from clutchwork.model.changes import Target, in_si, named, target
 from clutchwork.run.input_schedule import Act, put
 from clutchwork.signals.table import Table
-from clutchwork.stepping.parameters import NEW_RUN, NOTHING, Change, changed
+from clutchwork.stepping.parameters import Change, changed
 from clutchwork.stepping.signals import Settable, given_by_others, signals, unknown
 from clutchwork.stepping.tables import tabled
 
@@ -139,7 +140,7 @@ class Outside:
         for name, value in values.items():
             known = self._value(name)
             if not change.params and value is not None and known is not None and known.value != value:
-                problems.append(Problem(name, "", NOTHING, remedy=NEW_RUN))
+                problems.append(Problem(name, "", NOTHING.why, remedy=NOTHING.remedy))
             acts.append(Act("param", name, value, () if acts else tuple(change.params.items())))
         return ChangePlan([] if problems else acts, problems, change.new)
 

@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-import warnings
 from collections.abc import Iterator
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 from clutchwork.assembly.inputs import SPEED
+from clutchwork.assembly.provenance import parameter
 from clutchwork.assembly.wiring import wiring
 from clutchwork.base.errors import Problem, near
 from clutchwork.base.memoize import memoize
@@ -19,13 +19,11 @@ from clutchwork.model.changes import named, of_owner, own_names, owner_of
 from clutchwork.model.fields import number_problems
 from clutchwork.model.numbers import At
 from clutchwork.results.channels import channels
-from clutchwork.signals.table import Table
 
 if TYPE_CHECKING:
     from clutchwork.assembly.system import System
 
 # the temperature of an ambient, which has no declaration of its own
-MARK = 1.2345678e300  # s, a time that no signal has
 TEMPERATURE = Spec("signal", "K", "temperature of an ambient", above=0.0)
 
 
@@ -78,20 +76,10 @@ def composed(system: System) -> dict[str, Settable]:
         for item, spec in specs(type(element), "signal", "alternative") if composite else ():
             name, value = f"{element.name}.{item.name}", getattr(element, item.name)
             if name not in settable(system) and value is not None and not is_reference(value):
-                numbers = _parts_with(system, name, spec)
+                numbers = parameter(system, name).inputs
                 if numbers:
                     made[name] = Settable(numbers, system.inputs[numbers[0]].unit, spec, path_of(element), item.name)
     return made
-
-
-def _parts_with(system: System, name: str, spec: Spec) -> tuple[int, ...]:
-    """Numbers of the signals that are that of a composite: a mark put there is found in them."""
-    value = next(number for number in (1.0, 0.5, 300.0, 0.0, -1.0) if spec.allows(number))
-    mark = Table([(0.0, value), (MARK, value)])
-    with warnings.catch_warnings():
-        warnings.simplefilter("ignore")
-        made = system.changed({name: mark})
-    return tuple(number for number, item in enumerate(made.inputs) if item.signal == mark)
 
 
 def _declared(system: System) -> Iterator[tuple[str, tuple[str, str, Spec]]]:
