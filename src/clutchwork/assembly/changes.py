@@ -63,7 +63,7 @@ def changed(
 
 
 # what holds the elements of a System
-PARTS = ("elements", "contacts", "motions", "sensors", "flows", "processes")
+GROUPS = ("elements", "contacts", "motions", "sensors", "flows", "processes")
 # values by the fields that lead to them
 Values = list[tuple[tuple[str, ...], Any]]
 
@@ -85,7 +85,7 @@ class Quick(NamedTuple):
         """Everything of a System that holds them."""
         nodes = {id(node): replace(node, inertia=self.inertias[node.name]) for node in old.nodes if self._moves(node)}
         new = Renewed(nodes)
-        made = {name: tuple(map(partial(self._part, new), getattr(old, name))) for name in PARTS}
+        made = {name: tuple(map(partial(self._part, new), getattr(old, name))) for name in GROUPS}
         gears = tuple(replace(row, gear=new.of(row.gear)) for row in old.gears) if nodes else old.gears
         inputs = list(old.inputs)
         for number, signal in self.signals.items():

@@ -41,9 +41,7 @@ STAYS = {
     "contact_law": Stays("is another friction law, with states of its own", NEW_RUN),
     "contact": Stays("says when a contact may lock, which stays so while a run goes on", NEW_RUN),
 }
-STORES = Stays(
-    "decides how much energy the element stores: to change it would make some out of nothing", NEW_RUN
-)
+STORES = Stays("decides how much energy the element stores: to change it would make some out of nothing", NEW_RUN)
 VARIANT = Stays("selects a variant, which stays so while a run goes on", NEW_RUN)
 NOTHING = Stays("acts on nothing while a run goes on", NEW_RUN)
 

@@ -2,13 +2,14 @@
 
 Own numbers of elements and inertias are written into the arrays without assembling them, so it costs little to look at
 what one alone changes. Nothing else looks for it: changes, sweeps, gradients, steps and pages ask this table.
+decisions/0043
 """
 
 from __future__ import annotations
 
 import warnings
 from collections.abc import Iterator, Mapping
-from functools import cached_property
+from functools import cached_property, partial
 from itertools import islice
 from math import inf, nextafter
 from numbers import Real
@@ -37,10 +38,10 @@ Reach = Mapping[str, Places]
 
 # by so much of their scale numbers are moved; those at a bound go to one side alone
 PROBES = (1e-3, -1.7e-3, 2.3e-3, -2.9e-3)
-# values of signals, of which one fits any
-LEVELS = (1.0, 0.5, 300.0, 0.0, -1.0, 2.0, 0.25, 310.0)
+# values of signals, of which some fit any
+LEVELS = (1.0, 0.5, 300.0, 0.0, -1.0)
 # arrays that hold signals alone
-OF_SIGNALS = ("input_first", "input_count", "input_period", "input_value", "segment_time", "segment_coef")
+OF_SIGNALS = {"input_first", "input_count", "input_period", "input_value", "segment_time", "segment_coef"}
 
 
 @dataclass(frozen=True, eq=False)
@@ -54,20 +55,21 @@ class Parameter:
     # places that another value changes in each array, in flat order; nothing: it acts on nothing here
     reach: Reach
     is_word: bool  # each of these is the number itself
-    inputs: tuple[int, ...]  # numbers of the signals that it is
+    inputs: tuple[int, ...]  # numbers of the signals that it is, or is inside of
+    _spec: Spec
     _system: System
     _beside: System | None
 
     @property
     def is_signal(self) -> bool:
-        """Whether it is a signal and nothing else."""
-        return bool(self.inputs) and self.reach.keys() <= set(OF_SIGNALS)
+        """Whether it reaches signals and nothing else."""
+        return bool(self.inputs) and self.reach.keys() <= OF_SIGNALS
 
     @cached_property
     def words(self) -> Places:
         """Words of eight bytes in the bytes of the System that it changes, in order."""
-        starts = self._system.starts
-        found = [starts[name] // 8 + places for name, places in self.reach.items() if _is_real(self._system, name)]
+        known = {name: places for name, places in self.reach.items() if _is_real(self._system, name)}
+        found = [self._system.starts[name] // 8 + places for name, places in known.items()]
         return np.sort(np.concatenate([np.zeros(0, dtype=np.int64), *found]))
 
     @cached_property
@@ -86,7 +88,7 @@ class Parameter:
     def stays(self) -> Stays | None:
         """Why it cannot change while a run goes on, and what to do instead; None: it can."""
         if self.is_signal:
-            return None if _is_whole(self._system, self.name) else SIGNAL
+            return None if self._spec.what in SIGNALS else SIGNAL
         if self._beside is None:
             return OTHER
         return stays(self._system, self._system, self._beside) if self.reach else NOTHING
@@ -95,6 +97,11 @@ class Parameter:
     def when(self) -> str:
         """When it may change: "during a run" or "before a run"."""
         return "during a run" if self.stays is None else "before a run"
+
+    def is_word_at(self, value: float) -> bool:
+        """Whether with another value its words are that, and nothing else changes."""
+        made = _changed(self._system, self.name, value)
+        return made is not None and _is_value(made, differing(self._system, made), self.reach, value)
 
 
 class Parameters(Mapping[str, Parameter]):
@@ -123,21 +130,16 @@ class Parameters(Mapping[str, Parameter]):
 @memoize
 def parameter(system: System, name: str) -> Parameter:
     """One of them; its name must be known."""
-    aim = target(owners_of(system), name)
-    assert aim is not None, name
+    aim: Any = target(owners_of(system), name)
     value, spec = field_of(aim)
-    seen, last, inputs = list[Reach | None](), None, tuple[int, ...]()
-    is_word = isinstance(value, Real) and not is_shared(aim)
-    for there, made in islice(_moved(system, name, value, spec), 2):
-        reach, last = differing(system, made), made
-        seen.append(reach)
-        is_word = is_word and _is_word(made, reach, there)
-        inputs = inputs or _inputs(system, made, aim, there)
-        if not is_word:
-            break
-    reach = seen[0] if seen and seen[0] is not None else {}
-    is_word = is_word and len(seen) == 2 and _same(*seen)
-    return Parameter(name, value, unit_of(aim), bounds_of(spec), reach, is_word, inputs, system, last)
+    moved = ((there, made) for there in _others(value, spec) if (made := _changed(system, name, there)) is not None)
+    found = [(there, made, differing(system, made)) for there, made in islice(moved, 2)]
+    reach = next((reach for _, _, reach in found), None) or {}
+    is_number = isinstance(value, Real) and not is_shared(aim) and len(found) == 2 and bool(reach)
+    is_word = is_number and all(_is_value(made, there, reach, value) for value, made, there in found)
+    inputs = next((inputs for there, made, _ in found if (inputs := _inputs(system, made, aim, there))), ())
+    beside = next((made for _, made, _ in found), None)
+    return Parameter(name, value, unit_of(aim), bounds_of(spec), reach, is_word, inputs, spec, system, beside)
 
 
 def is_shared(aim: Target) -> bool:
@@ -159,85 +161,71 @@ def differing(one: System, other: System) -> Reach | None:
     found = dict[str, Places]()
     for name, array in one.arrays.items():
         new = other.arrays[name]
-        if new is array:
-            continue
         if new.shape != array.shape:
             return None
         bits = np.dtype(f"u{array.dtype.itemsize}")
-        places = np.flatnonzero(array.reshape(-1).view(bits) != new.reshape(-1).view(bits))
-        found |= {name: places} if len(places) else {}
+        if new is not array and np.any(unlike := array.reshape(-1).view(bits) != new.reshape(-1).view(bits)):
+            found[name] = np.flatnonzero(unlike)
     return found
 
 
-def _moved(system: System, name: str, value: Any, spec: Spec) -> Iterator[tuple[Any, System]]:
-    """Other values, and the System with each; those that are refused are left out."""
-    for there in _others(value, spec):
+def _changed(system: System, name: str, value: Any) -> System | None:
+    """The System with another value; None where that is refused."""
+    with warnings.catch_warnings():
+        # what is rarely wanted was said of the driveline
+        warnings.simplefilter("ignore", ModelWarning)
         try:
-            with warnings.catch_warnings():
-                # what is rarely wanted was said of the driveline
-                warnings.simplefilter("ignore", ModelWarning)
-                made = system.changed({name: there})
+            return system.changed({name: value})
         except ModelError:
-            continue
-        yield there, made
+            return None
 
 
 def _others(value: Any, spec: Spec) -> Iterator[Any]:
     """Values beside one."""
-    if isinstance(value, Real) and not isinstance(value, bool):
-        whole, scale = spec.whole or spec.fixed, abs(float(value)) or 1.0
-        yield from (int(value) + step for step in (1, -1)) if whole else (float(value) + p * scale for p in PROBES)
-    elif isinstance(value, bool) or spec.choices:
+    if isinstance(value, bool) or spec.choices:
         yield from (other for other in (spec.choices or (True, False)) if other != value)
+    elif isinstance(value, Real):
+        now, scale = float(value), abs(float(value)) or 1.0
+        yield from (now + 1.0, now - 1.0) if spec.whole or spec.fixed else (now + share * scale for share in PROBES)
     elif isinstance(value, Signal) and type(value).segments is Table.segments:
         yield from map(Table, _tables(vars(value)["points"]))
     elif isinstance(value, Signal) and spec.what in SIGNALS:
         yield from (Table([(0.0, level), (1.0, level)]) for level in LEVELS if spec.allows(level))
-    elif _is_table(value):
+    elif hasattr(value, "__len__") and not isinstance(value, str):
         yield from _tables(value)
 
 
-def _is_table(value: Any) -> bool:
-    return hasattr(value, "__len__") and not isinstance(value, str) and len(value) > 0
-
-
 def _tables(values: Any) -> Iterator[Any]:
-    """Tables whose numbers are others, each by another share: ordinates of pairs, or all numbers of a list."""
-    pairs = all(_is_table(row) and len(row) == 2 for row in values)
-    flat = [float(row[1]) for row in values] if pairs else []
-    size = max(map(abs, flat), default=0.0) or 1.0
-    for share in PROBES if pairs else ():
-        yield [[x, y + share * size * (1 + i / len(values))] for i, (x, y) in enumerate(values)]
-    for share in () if pairs else PROBES:
-        yield [_scaled(row, 1.0 + share * (1 + i / len(values))) for i, row in enumerate(values)]
+    """Tables with other numbers, each by another share: ordinates of pairs, or all numbers of a list or of rows."""
+    pairs = all(hasattr(row, "__len__") and len(row) == 2 for row in values)
+    size = max((abs(float(row[1])) for row in values), default=0.0) or 1.0 if pairs else 0.0
+    for share in PROBES if len(values) else ():
+        moves = [share * (1 + i / len(values)) for i in range(len(values))]
+        both = zip(values, moves, strict=True)
+        yield [[row[0], row[1] + move * size] if pairs else _scaled(row, 1.0 + move) for row, move in both]
 
 
 def _scaled(row: Any, factor: float) -> Any:
     return [one * factor for one in row] if hasattr(row, "__len__") else row * factor
 
 
-def _is_word(made: System, reach: Reach | None, value: float) -> bool:
-    """Whether all that is new is a number itself."""
-    own = reach.items() if reach else ()
-    return bool(reach) and all(
-        _is_real(made, name) and bool(np.all(made.arrays[name].reshape(-1)[places] == value)) for name, places in own
-    )
+def _is_value(made: System, differs: Reach | None, reach: Reach, value: float) -> bool:
+    """Whether a value itself is at all places, and nothing differs elsewhere."""
+    if differs is None or not differs.keys() <= reach.keys():
+        return False
+    inside = all(np.isin(places, reach[name]).all() for name, places in differs.items())
+    words = (made.arrays[name].reshape(-1)[places] for name, places in reach.items() if _is_real(made, name))
+    return inside and all(map(partial(_is_real, made), reach)) and all(np.all(own == value) for own in words)
 
 
 def _is_real(system: System, array: str) -> bool:
     return bool(system.arrays[array].dtype.kind == "f")
 
 
-def _same(one: Reach | None, other: Reach | None) -> bool:
-    return bool(one and other) and one.keys() == other.keys() and all(map(np.array_equal, one.values(), other.values()))
-
-
 def _inputs(system: System, made: System, aim: Target, value: Any) -> tuple[int, ...]:
     """Numbers of the signals that something is, or is inside of."""
     signal = _signal_with(aim, value)
-    if signal is None:
-        return ()
-    both = enumerate(zip(system.inputs, made.inputs, strict=True))
+    both = enumerate(zip(system.inputs, made.inputs, strict=True)) if signal is not None else ()
     return tuple(number for number, (old, new) in both if new.signal == signal != old.signal)
 
 
@@ -249,9 +237,3 @@ def _signal_with(aim: Target, value: Any) -> Signal | None:
             rest = aim.path[cut:]
             return renewed(outer, [(rest, value)]) if rest else plain_signal(value)
     return None
-
-
-def _is_whole(system: System, name: str) -> bool:
-    """Whether a name is that of a signal, not of something inside of one."""
-    aim = target(owners_of(system), name)
-    return aim is not None and field_of(aim)[1].what in SIGNALS

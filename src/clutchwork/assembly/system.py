@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from clutchwork.assembly.assemble import assembled
-from clutchwork.assembly.changes import UNKNOWN_SOURCE, Quick, changed, quick
+from clutchwork.assembly.changes import GROUPS, UNKNOWN_SOURCE, Quick, changed, quick
 from clutchwork.assembly.dependence import dependent_sets
 from clutchwork.assembly.patches import Numbered, numbered
 from clutchwork.assembly.provenance import Parameters
@@ -46,7 +46,7 @@ CALLS = {
     "gradient": "; cw.differentiable(system, t_end, of=..., by=...).gradient() does it",
 }
 # what of a changed System is made where it is asked for, and where it is noted what that is made of
-LATER, CHANGE = frozenset(("nodes", "elements", "contacts", "motions", "gears", "sensors", "flows", "processes", "inputs", "source")), "_change"
+LATER, CHANGE = frozenset((*GROUPS, "nodes", "gears", "inputs", "source")), "_change"
 # of a file that holds a System
 PARTS = ("content", "model", "independent")
 
@@ -103,11 +103,12 @@ class System:
 
         return bundle(self, "system")
 
-    def __getattr__(self, name: str) -> Any:
+    def __getattr__(self, name: str) -> Array:
         own = self.__dict__
         if name in LATER:
             change = own.get(CHANGE)
-            return own[name] if change is None else self._later(name, *change)
+            found: Array = own[name] if change is None else self._later(name, *change)
+            return found
         try:
             arrays = own["arrays"]
             return dense(arrays, name) if name in SPARSE else arrays[name]

@@ -10,7 +10,6 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
-from clutchwork.assembly.provenance import parameter
 from clutchwork.base.classes import dataclass
 from clutchwork.base.errors import ModelError
 from clutchwork.gradients.finite_differences import Bent, Rebuilt, slope
@@ -18,6 +17,7 @@ from clutchwork.gradients.system_words import WordStructure, finite, made, words
 from clutchwork.results.gradient import NoGradient
 
 if TYPE_CHECKING:
+    from clutchwork.assembly.provenance import Parameter
     from clutchwork.assembly.system import System
     from clutchwork.gradients.parameters import Tunable
 
@@ -31,18 +31,19 @@ STRAIGHT = b"straight"
 
 @dataclass(frozen=True, eq=False)
 class Assembled:
-    """Words that follow from some numbers by assembling the driveline, and their derivatives by differences.
+    """Words that follow from some numbers by assembling the driveline, and their derivatives.
 
-    Derivatives are differences of eighth order, whose rounding error is some 1e-13. Where the words are a plane over
-    the numbers that go into them, as they are over inertias, they are found once.
+    Those by inertias, of which words are sums, are exact. The others are differences of eighth order, whose rounding
+    error is some 1e-13; where the words are a plane over these numbers they are found once.
     """
 
     system: System
     structure: WordStructure
     parameters: tuple[Tunable, ...]
     start: Array  # their values in the System
+    sums: dict[int, Parameter]  # those that the words are sums of, by their number
     _systems: dict[bytes, System] = field(default_factory=dict, repr=False)
-    _known: dict[tuple[int, bytes], Array] = field(default_factory=dict, repr=False)  # derivatives, by group and values
+    _known: dict[bytes, Array] = field(default_factory=dict, repr=False)  # derivatives by the others, by their values
 
     def words(self, x: Array) -> Array | None:
         """The words for values of the numbers; None where the structure is another one there."""
@@ -63,59 +64,28 @@ class Assembled:
 
     def slopes(self, x: Array) -> Array:
         """Derivatives of all words, a column for each number; NoGradient where there is none."""
-        columns, problems, there = np.zeros((len(self.structure.words), len(x))), list[str](), None
-        for group in self._groups:
-            key = x[group].tobytes()
-            known = self._known.get((group[0], STRAIGHT), self._known.get((group[0], key)))
-            known = self._exact(group) if known is None else known
-            if known is None:
-                there = there or partial(self._beside, self._pinned(x))
-                try:
-                    known, is_plane = self._differences(x, group, there)
-                except NoGradient as none:
-                    problems += none.problems
-                    continue
-                self._known[group[0], STRAIGHT if is_plane else key] = known
-            columns[:, group] = known
-        if problems:
-            raise NoGradient(problems)
-        if len(self._known) > MOST_KEPT * len(self._groups):
-            self._known.clear()
+        columns, others = np.zeros((len(self.structure.words), len(x))), self._others
+        for number, one in self.sums.items():
+            columns[one.words, number] = one.derivative
+        key = x[others].tobytes()
+        if others and STRAIGHT not in self._known and key not in self._known:
+            if len(self._known) >= MOST_KEPT:
+                self._known.clear()
+            found, is_plane = self._differences(x)
+            self._known[STRAIGHT if is_plane else key] = found
+        if others:
+            columns[:, others] = self._known[STRAIGHT if STRAIGHT in self._known else key]
         return columns
 
-    def _exact(self, group: list[int]) -> Array | None:
-        """Derivatives by numbers of which the words are sums; None where they are more."""
-        known, columns = [parameter(self.system, self.parameters[n].field) for n in group], list[Array]()
-        for one in known:
-            if one.derivative is None or one.is_word:
-                return None
-            columns.append(np.zeros(len(self.structure.words)))
-            columns[-1][one.words] = one.derivative
-        self._known[group[0], STRAIGHT] = np.stack(columns, axis=1)
-        return self._known[group[0], STRAIGHT]
-
     @cached_property
-    def _groups(self) -> list[list[int]]:
-        """Numbers that go into words together: those that touch the same words, where none is zero by chance."""
-        there = partial(self._beside, self._pinned(self.start))
-        sizes = np.where(self.start == 0.0, 1.0, np.abs(self.start))
-        step = 1e-3 * np.minimum(sizes, [one.reach for one in self.parameters])
-        for sign in (1.0, -1.0):
-            try:
-                base = there(self.start + sign * step)
-                touched = [there(self.start + sign * step * (1.0 + self._only(n))) != base for n in range(len(step))]
-            except (ModelError, Rebuilt):
-                continue
-            return _joined(touched)
-        return [list(range(len(step)))]
+    def _others(self) -> list[int]:
+        return [number for number in range(len(self.start)) if number not in self.sums]
 
-    def _only(self, number: int) -> Array:
-        return np.array([float(n == number) for n in range(len(self.start))])
-
-    def _differences(self, x: Array, group: list[int], there: Callable[[Array], Array]) -> tuple[Array, bool]:
-        """Derivatives by the numbers of a group at a point, and whether they are those of all points."""
+    def _differences(self, x: Array) -> tuple[Array, bool]:
+        """Derivatives at a point by the numbers that words are no sums of, and whether they are those of all points."""
+        there = partial(self._beside, self._pinned(x))
         here, columns, problems, straight = there(x), list[Array](), list[str](), True
-        for number in group:
+        for number in self._others:
             one = self.parameters[number]
             size = max(abs(float(x[number])), one.scale if one.places else 0.0) or 1.0
             try:
@@ -128,21 +98,19 @@ class Assembled:
         if problems:
             raise NoGradient(problems)
         slopes = np.stack(columns, axis=1)
-        return slopes, straight and self._is_plane(x, group, here, slopes, there)
+        return slopes, straight and self._is_plane(x, here, slopes, there)
 
-    def _is_plane(
-        self, x: Array, group: list[int], here: Array, slopes: Array, there: Callable[[Array], Array]
-    ) -> bool:
+    def _is_plane(self, x: Array, here: Array, slopes: Array, there: Callable[[Array], Array]) -> bool:
         """Whether two more points lie on the plane through the words at one."""
         sizes = np.where(x == 0.0, 1.0, np.abs(x)) * (1.0 + 0.3 * np.cos(np.arange(len(x))))
         for share in (0.03, -0.02):
-            step = np.zeros(len(x))
-            step[group] = share * np.minimum(sizes, [one.reach for one in self.parameters])[group]
+            step = share * np.minimum(sizes, [one.reach for one in self.parameters])
+            step[list(self.sums)] = 0.0
             try:
                 rise = there(x + step) - here
             except (ModelError, Rebuilt):
                 return False
-            own = step[group]
+            own = step[self._others]
             if np.any(np.abs(rise - slopes @ own) > 1e-12 * (np.abs(slopes) @ np.abs(own)) + 4e-15 * np.abs(here)):
                 return False
         return True
@@ -176,14 +144,3 @@ def _along(there: Callable[[Array], Array], x: Array, number: int, step: float) 
     moved = x.copy()
     moved[number] += step
     return there(moved)
-
-
-def _joined(touched: list[NDArray[np.bool_]]) -> list[list[int]]:
-    """Numbers in groups, none of which touches a word of another."""
-    groups = list[tuple[list[int], NDArray[np.bool_]]]()
-    for number, words in enumerate(touched):
-        mine = [group for group in groups if np.any(group[1] & words)]
-        members = [n for group in mine for n in group[0]]
-        groups = [group for group in groups if not np.any(group[1] & words)]
-        groups.append(([*members, number], np.logical_or.reduce([words, *(group[1] for group in mine)])))
-    return sorted(sorted(members) for members, _ in groups)

@@ -37,9 +37,7 @@ class TableWords:
     at_start: Places  # words of the value at 0, one for each signal
 
     @classmethod
-    def of(
-        cls, system: System, inputs: Sequence[int], free: Sequence[tuple[int, Tunable]]
-    ) -> TableWords | None:
+    def of(cls, system: System, inputs: Sequence[int], free: Sequence[tuple[int, Tunable]]) -> TableWords | None:
         """The words of a table of a System; None where the signal is another one.
 
         Parameters: inputs, numbers of the signals that it is; free, its parameters with their numbers.

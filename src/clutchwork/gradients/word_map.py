@@ -82,17 +82,15 @@ class Chart:
         for written, signals in ((scalars, tables), ({}, tables)):
             used = {*written, *(number for table in signals for number in table.numbers.tolist())}
             bound = [number for number in range(len(x)) if number not in used]
-            rest = Assembled(system, structure, tuple(parameters[number] for number in bound), x[bound])
+            rest = _assembled(system, structure, [parameters[number] for number in bound], x[bound])
             chart = cls(written, tuple(signals), bound, rest, x == 0.0)
             # numbers that are assembled may make another structure
             held = (chart._holds(system, parameters, x, fixed) for fixed in ([], bound))
             if next((one for one in held if one is not None), False):
                 return chart
-        return replace(chart, tables=(), bound=[*range(len(x))], assembled=Assembled(system, structure, parameters, x))
+        return replace(chart, tables=(), bound=[*range(len(x))], assembled=_assembled(system, structure, parameters, x))
 
-    def _holds(
-        self, system: System, parameters: Sequence[Tunable], x: Array, fixed: Sequence[int]
-    ) -> bool | None:
+    def _holds(self, system: System, parameters: Sequence[Tunable], x: Array, fixed: Sequence[int]) -> bool | None:
         """Whether the words are right where all numbers but those that are fixed are others, of which some were zero.
 
         None where the structure is another one there.
@@ -154,3 +152,12 @@ class Chart:
 def _room(one: Tunable, value: float) -> float:
     """By how much a number may move without another structure: a knot at 0 stays there."""
     return min(one.scale, one.reach) * (value != 0.0) if np.isfinite(one.reach) else one.scale
+
+
+def _assembled(system: System, structure: WordStructure, chosen: Sequence[Tunable], x: Array) -> Assembled:
+    """Numbers that words are assembled from; sums where none of the others goes into their words."""
+    own = [parameter(system, one.field) for one in chosen]
+    rest = (one.words for one in own if one.is_word or one.derivative is None)
+    others = np.concatenate([np.zeros(0, dtype=np.int64), *rest])
+    sums = {n: one for n, one in enumerate(own) if one.derivative is not None and not np.isin(one.words, others).any()}
+    return Assembled(system, structure, tuple(chosen), x, sums)
