@@ -65,6 +65,11 @@ class Parameter:
         """Whether it reaches signals and nothing else."""
         return bool(self.inputs) and self.reach.keys() <= OF_SIGNALS
 
+    @property
+    def is_sum(self) -> bool:
+        """Whether its words are sums over it and others like it, as the mass matrix is over inertias."""
+        return self.derivative is not None and not self.is_word
+
     @cached_property
     def words(self) -> Places:
         """Words of eight bytes in the bytes of the System that it changes, in order."""

@@ -210,12 +210,16 @@ class System:
         # of changes of changes none waits for another
         own = {item.name: getattr(self, item.name) for item in fields(self)}
         vars(self).pop(CHANGE, None)
+        data = bytearray(self.to_bytes())
         for name, array in found.arrays.items():
             if array is not self.arrays[name]:
                 array.flags.writeable = False
+                data[self.starts[name] : self.starts[name] + array.nbytes] = array.tobytes()
         made, arrays = object.__new__(System), MappingProxyType(found.arrays)
         vars(made).update({name: value for name, value in own.items() if name not in LATER})
         vars(made).update({"arrays": arrays, "numbered": self.numbered._replace(arrays=arrays), CHANGE: (self, found)})
+        # what follows from its structure alone
+        vars(made).update({"counts": self.counts, "starts": self.starts, "_bytes": bytes(data)})
         return made
 
     @property

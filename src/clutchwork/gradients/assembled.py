@@ -17,13 +17,12 @@ from clutchwork.gradients.system_words import WordStructure, finite, made, words
 from clutchwork.results.gradient import NoGradient
 
 if TYPE_CHECKING:
-    from clutchwork.assembly.provenance import Parameter
     from clutchwork.assembly.system import System
     from clutchwork.gradients.parameters import Tunable
 
 Array = NDArray[np.float64]
 
-# Systems that are remembered
+# points that are remembered
 MOST_KEPT = 8
 # key of derivatives that hold everywhere
 STRAIGHT = b"straight"
@@ -33,59 +32,35 @@ STRAIGHT = b"straight"
 class Assembled:
     """Words that follow from some numbers by assembling the driveline, and their derivatives.
 
-    Those by inertias, of which words are sums, are exact. The others are differences of eighth order, whose rounding
-    error is some 1e-13; where the words are a plane over these numbers they are found once.
+    Derivatives are differences of eighth order, whose rounding error is some 1e-13. Where the words are a plane over
+    these numbers they are found once.
     """
 
     system: System
     structure: WordStructure
     parameters: tuple[Tunable, ...]
     start: Array  # their values in the System
-    sums: dict[int, Parameter]  # those that the words are sums of, by their number
-    _systems: dict[bytes, System] = field(default_factory=dict, repr=False)
-    _known: dict[bytes, Array] = field(default_factory=dict, repr=False)  # derivatives by the others, by their values
-
-    def words(self, x: Array) -> Array | None:
-        """The words for values of the numbers; None where the structure is another one there."""
-        if np.array_equal(x, self.start):
-            return self.structure.words
-        found = words_of(self._system(x))
-        return found if self.structure.is_that_of(found) else None
-
-    def _system(self, x: Array) -> System:
-        if np.array_equal(x, self.start):
-            return self.system
-        key, known = x.tobytes(), self._systems
-        if key not in known:
-            if len(known) >= MOST_KEPT:
-                known.clear()
-            known[key] = made(self.system, self.parameters, x)
-        return known[key]
+    numbers: tuple[int, ...]  # those that words are assembled from
+    _known: dict[bytes, Array] = field(default_factory=dict, repr=False)  # derivatives by these, by their values
 
     def slopes(self, x: Array) -> Array:
-        """Derivatives of all words, a column for each number; NoGradient where there is none."""
-        columns, others = np.zeros((len(self.structure.words), len(x))), self._others
-        for number, one in self.sums.items():
-            columns[one.words, number] = one.derivative
-        key = x[others].tobytes()
-        if others and STRAIGHT not in self._known and key not in self._known:
+        """Derivatives of all words, a column for each of these numbers; NoGradient where there is none."""
+        if not self.numbers:
+            return np.zeros((len(self.structure.words), 0))
+        key = STRAIGHT if STRAIGHT in self._known else x[list(self.numbers)].tobytes()
+        if key not in self._known:
             if len(self._known) >= MOST_KEPT:
                 self._known.clear()
             found, is_plane = self._differences(x)
             self._known[STRAIGHT if is_plane else key] = found
-        if others:
-            columns[:, others] = self._known[STRAIGHT if STRAIGHT in self._known else key]
-        return columns
-
-    @cached_property
-    def _others(self) -> list[int]:
-        return [number for number in range(len(self.start)) if number not in self.sums]
+            return found
+        return self._known[key]
 
     def _differences(self, x: Array) -> tuple[Array, bool]:
-        """Derivatives at a point by the numbers that words are no sums of, and whether they are those of all points."""
+        """Derivatives at a point, and whether they are those of all points."""
         there = partial(self._beside, self._pinned(x))
         here, columns, problems, straight = there(x), list[Array](), list[str](), True
-        for number in self._others:
+        for number in self.numbers:
             one = self.parameters[number]
             size = max(abs(float(x[number])), one.scale if one.places else 0.0) or 1.0
             try:
@@ -104,13 +79,12 @@ class Assembled:
         """Whether two more points lie on the plane through the words at one."""
         sizes = np.where(x == 0.0, 1.0, np.abs(x)) * (1.0 + 0.3 * np.cos(np.arange(len(x))))
         for share in (0.03, -0.02):
-            step = share * np.minimum(sizes, [one.reach for one in self.parameters])
-            step[list(self.sums)] = 0.0
+            step, own = np.zeros(len(x)), share * np.minimum(sizes, [one.reach for one in self.parameters])
+            step[list(self.numbers)] = own = own[list(self.numbers)]
             try:
                 rise = there(x + step) - here
             except (ModelError, Rebuilt):
                 return False
-            own = step[self._others]
             if np.any(np.abs(rise - slopes @ own) > 1e-12 * (np.abs(slopes) @ np.abs(own)) + 4e-15 * np.abs(here)):
                 return False
         return True
@@ -130,7 +104,7 @@ class Assembled:
         return self._with_speeds(self.start)
 
     def _with_speeds(self, x: Array) -> System:
-        system = self._system(x)
+        system = self.system if np.array_equal(x, self.start) else made(self.system, self.parameters, x)
         asked = replace(system, wanted=system.independent)
         try:
             words = words_of(made(asked, self.parameters, x))

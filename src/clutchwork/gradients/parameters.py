@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
-from clutchwork.assembly.changes import UNKNOWN_SOURCE
+from clutchwork.assembly.changes import UNKNOWN_SOURCE, owners_of
 from clutchwork.assembly.provenance import bounds_of
 from clutchwork.base.classes import dataclass
 from clutchwork.base.errors import ModelError, UseError, advised
@@ -182,10 +182,9 @@ def _words(place: Sequence[int]) -> str:
 
 def changes(system: System, chosen: Sequence[Tunable], x: Array) -> dict[str, Any]:
     """What `System.changed` is given for the values of parameters."""
-    owners = named(system.source) if system.source else Owners()
     made = dict[str, Any]()
     for one, value in zip(chosen, x.tolist(), strict=True):
-        aim = target(owners, one.field) if one.places and one.field not in made else None
+        aim = target(owners_of(system), one.field) if one.places and one.field not in made else None
         if aim is not None:
             made[one.field] = _lists(field_of(aim)[0])
         for place in one.places or ((),):
