@@ -96,7 +96,7 @@ class Parameter:
             return None if self._spec.what in SIGNALS else SIGNAL
         if self._beside is None:
             return OTHER
-        return stays(self._system, self._system, self._beside) if self.reach else NOTHING
+        return stays(self._system, self._system, self._beside) or (None if self.reach else NOTHING)
 
     @property
     def when(self) -> str:
@@ -191,7 +191,9 @@ def _others(value: Any, spec: Spec) -> Iterator[Any]:
         yield from (other for other in (spec.choices or (True, False)) if other != value)
     elif isinstance(value, Real):
         now, scale = float(value), abs(float(value)) or 1.0
-        yield from (now + 1.0, now - 1.0) if spec.whole or spec.fixed else (now + share * scale for share in PROBES)
+        whole = isinstance(value, int) and (spec.whole or spec.fixed)
+        found = (value + 1, value - 1) if whole else tuple(now + share * scale for share in PROBES)
+        yield from (there for there in found if spec.allows(there))
     elif isinstance(value, Signal) and type(value).segments is Table.segments:
         yield from map(Table, _tables(vars(value)["points"]))
     elif isinstance(value, Signal) and spec.what in SIGNALS:

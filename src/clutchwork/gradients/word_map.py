@@ -78,7 +78,7 @@ class Chart:
             beside = [one.words for one in known.values() if one is not own and not (own.is_sum and one.is_sum)]
             if np.isin(own.words, np.concatenate([own.words[:0], *beside])).any():
                 continue
-            if own.derivative is not None:
+            if own.derivative is not None and _is_same(own, parameter(system, name)):
                 fixed[free[0][0]] = own
             elif own.is_signal and free[0][1].places:
                 found = TableWords.of(system, own.inputs, free)
@@ -88,8 +88,10 @@ class Chart:
         return cls(fixed, tuple(tables), Assembled(system, structure, parameters, x, rest))
 
     def holds(self, words: Array, x: Array) -> bool:
-        """Whether the words at a point are of this structure."""
-        return self.assembled.structure.is_that_of(words) and all(table.holds(x) for table in self.tables)
+        """Whether the words at a point are of this structure, and follow alike: at zero a number may be at a kink."""
+        zeros = ((one == 0.0)[list(self.fixed)] for one in (x, self.assembled.start))
+        alike = np.array_equal(*zeros) and self.assembled.structure.is_that_of(words)
+        return alike and all(table.holds(x) for table in self.tables)
 
     def slopes(self, x: Array) -> Slopes:
         """Derivatives of the words at a point; NoGradient where there is none."""
@@ -123,6 +125,11 @@ def _known(system: System, structure: WordStructure, parameters: Sequence[Tunabl
         moves *= [bool(parameter(system, one.field).words.size) for one in parameters]
         beside = _beside(system, structure, parameters, x, moves)
     return {one.field: parameter(beside or system, one.field) for one in parameters}
+
+
+def _is_same(one: Parameter, other: Parameter) -> bool:
+    """Whether a number, which may be at a kink in one of two Systems, reaches the same words in both."""
+    return other.derivative is not None and np.array_equal(one.words, other.words)
 
 
 def _beside(
