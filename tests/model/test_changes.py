@@ -72,7 +72,7 @@ def _law(law: Any) -> dict[str, Any]:
 def differences(one: cw.System, other: cw.System) -> str:
     """What of two Systems differs, their models included; "" where nothing does."""
     found = [name for name, array in one.arrays.items() if array.tobytes() != other.arrays[name].tobytes()]
-    plain = ("name", "counts", "parameters", "notes", "warnings", "independent", "sums", "links", "nodes", "model")
+    plain = ("name", "counts", "places", "notes", "warnings", "independent", "sums", "links", "nodes", "model")
     found += [name for name in plain if getattr(one, name) != getattr(other, name)]
     found += ["bytes"] if one.to_bytes() != other.to_bytes() else []
     found += ["inputs"] if [*map(said, one.inputs)] != [*map(said, other.inputs)] else []
@@ -292,7 +292,7 @@ def test_changes_add_up_and_settings_stay():
     twice = system.changed({"F1.gain": 0.3}).changed({"w1.inertia": 20.0})
     assert differences(once, twice) == ""
     assert once.settings == system.settings
-    assert system.params[system.parameters["F1.gain"]] == six_speed.GAIN["F1"]
+    assert system.params[system.places["F1.gain"]] == six_speed.GAIN["F1"]
     assert differences(pickle.loads(pickle.dumps(once)), once) == ""
     assert once.changed({}).to_bytes() == once.to_bytes()
 

@@ -234,7 +234,7 @@ def test_choices_are_words_in_files_and_numbers_in_the_core(tmp_path):
     d.save(tmp_path / "model.toml")
     assert 'shape = "lorentz"' in (tmp_path / "model.toml").read_text()
     system = cw.Driveline.load(tmp_path / "model.toml").assemble()
-    assert system.params[system.parameters["b.friction.shape"]] == 2.0
+    assert system.params[system.places["b.friction.shape"]] == 2.0
 
 
 def test_a_misspelt_word_in_a_file(tmp_path):

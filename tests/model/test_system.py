@@ -111,8 +111,8 @@ def test_system_with_a_controller_is_not_saved(tmp_path):
 def test_names(system):
     assert [item.name for item in system.inputs] == ["load.torque", "F1.pressure", "F2.pressure", "F4.pressure"]
     assert [item.unit for item in system.inputs] == ["N m", "Pa", "Pa", "Pa"]
-    assert system.params[system.parameters["F2.gain"]] == six_speed.GAIN["F2"]
-    assert system.params[system.parameters["F4.friction.fast"]] == 0.065
+    assert system.params[system.places["F2.gain"]] == six_speed.GAIN["F2"]
+    assert system.params[system.places["F4.friction.fast"]] == 0.065
     with pytest.raises(AttributeError, match="did you mean 'basis'"):
         _ = system.bassis
 

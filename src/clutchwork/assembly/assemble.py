@@ -92,7 +92,7 @@ def assembled(whole: Model, independent: Sequence[str] = (), found: Findings | N
         "gearboxes": tuple(table for one in whole.elements if (table := one.shift_table()) is not None),
         "sums": parts.sums,
         "independent": tuple(model.nodes[n].name for n in made.independent),
-        "parameters": pools.places,
+        "places": pools.places,
         "notes": (*made.notes, *(f"{path_of(one)}: {note}" for one in whole.elements for note in one.notes())),
         "warnings": tuple(map(str, found.advice)),
     }

@@ -4,18 +4,21 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from copy import deepcopy
-from functools import cache
+from dataclasses import replace
+from functools import cache, partial
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 from clutchwork.assembly.assemble import assembled
-from clutchwork.assembly.patches import Numbered, Unpatched, changed_signals, patched, patches
+from clutchwork.assembly.masses import masses
+from clutchwork.assembly.patches import Unpatched, changed_signals, patched, patches
 from clutchwork.base.errors import ModelError, Problem
-from clutchwork.declare.node import Component, Law, Signal
+from clutchwork.base.memoize import memoize
+from clutchwork.declare.node import Component, Node, Signal
 from clutchwork.declare.schema import specs
 from clutchwork.declare.wording import words_of_files
-from clutchwork.model.changes import changed_model, named, renewed, target, with_held
+from clutchwork.model.changes import Owners, Renewed, Target, changed_model, named, renewed, target, with_values
 from clutchwork.model.components import component_advice, component_problems
-from clutchwork.model.fields import BROKEN, SOUND, At, law_problems, value_problems
+from clutchwork.model.fields import BROKEN, SOUND, At, value_problems
 from clutchwork.model.findings import findings
 from clutchwork.model.model import Model
 from clutchwork.model.problems import TOO_FAR_APART
@@ -23,6 +26,7 @@ from clutchwork.model.temperatures import temperature_advice
 
 if TYPE_CHECKING:
     from clutchwork.assembly.records import Array
+    from clutchwork.assembly.system import System
     from clutchwork.base.errors import Problem as Found
 
 UNKNOWN_SOURCE = Problem(
@@ -58,49 +62,79 @@ def changed(
     return model, made, found.advice
 
 
+# what holds the elements of a System
+GROUPS = ("elements", "contacts", "motions", "sensors", "flows", "processes")
 # values by the fields that lead to them
 Values = list[tuple[tuple[str, ...], Any]]
 
 
 class Quick(NamedTuple):
-    """Other numbers of elements that nothing else depends on: the model, its arrays, and what is new by element."""
+    """Other numbers that nothing else depends on: the arrays, and what is new of all that stands in a System."""
 
-    source: Model
     arrays: dict[str, Array]
-    values: dict[str, Values]
+    aims: list[tuple[Target, Any]]
+    values: dict[str, Values]  # of elements
     signals: dict[int, Signal]  # by the number of their input
+    inertias: Mapping[str, float]  # of shafts and masses
+
+    def source(self, old: Model) -> Model:
+        """The driveline with them."""
+        return with_values(old, self.aims)
+
+    def content(self, old: System) -> dict[str, Any]:
+        """Everything of a System that holds them."""
+        nodes = {id(node): replace(node, inertia=self.inertias[node.name]) for node in old.nodes if self._moves(node)}
+        new = Renewed(nodes)
+        made = {name: tuple(map(partial(self._part, new), getattr(old, name))) for name in GROUPS}
+        gears = tuple(replace(row, gear=new.of(row.gear)) for row in old.gears) if nodes else old.gears
+        inputs = list(old.inputs)
+        for number, signal in self.signals.items():
+            inputs[number] = replace(inputs[number], signal=signal)
+        return {**made, "nodes": tuple(map(new.of, old.nodes)), "gears": gears, "inputs": tuple(inputs)}
+
+    def _moves(self, node: Node) -> bool:
+        return node.name in self.inertias
+
+    def _part(self, new: Renewed, part: Component) -> Any:
+        """An element with other values, on the shafts of the System, which are not those of its source."""
+        own = renewed(part, self.values[part.name]) if part.name in self.values else part
+        return new.of(own) if self.inertias else own
 
 
-def quick(source: Model, where: Numbered, changes: Mapping[str, Any]) -> Quick | None:
+def quick(system: System, changes: Mapping[str, Any]) -> Quick | None:
     """The changes where they are such; None: everything must be looked at, and assembled, anew."""
-    given = _given(source, where, changes)
-    new = None if given is None else _right(given)
-    if given is None or new is None:
+    owners, where = owners_of(system), system.numbered
+    given, aims, inertias = dict[str, tuple[Component, Values]](), list[tuple[Target, Any]](), dict[str, float]()
+    for name, value in changes.items():
+        aim, kept = target(owners, name), _kept(value)
+        if aim is not None and isinstance(aim.owner, Node) and aim.path == ("inertia",):
+            inertias[name] = kept
+        elif aim is not None and isinstance(aim.owner, Component) and aim.owner.name not in where.referred:
+            given.setdefault(aim.owner.name, (aim.owner, []))[1].append((aim.path, kept))
+        else:
+            return None
+        aims.append((aim, kept))
+    known = masses(system) if inertias else None
+    found = [] if not inertias else None if known is None else known.patches(inertias)
+    new = None if found is None else _right(given)
+    if found is None or new is None:
         return None
     try:
-        found = [patch for old, made in new.values() for patch in patches(where, old, made)]
+        found += [patch for old, made in new.values() for patch in patches(where, old, made)]
         signals = {
             where.inputs[name]: signal for old, made in new.values() for name, signal in changed_signals(old, made)
         }
     except Unpatched:
         return None
-    model = source.copy()
-    by_name = {name: made for name, (_, made) in new.items()}
-    inner = {id(old): own for old, own in given.values()}
-    model.elements = [by_name.get(e.name) or with_held(e, inner) for e in source.elements]
     values = {name: own for name, (_, own) in given.items()}
-    return Quick(model, patched(where.arrays, found), values, signals)
+    moved = {name.rpartition(".")[0]: float(value) for name, value in inertias.items()}
+    return Quick(patched(where.arrays, found), aims, values, signals, moved)
 
 
-def _given(source: Model, where: Numbered, changes: Mapping[str, Any]) -> dict[str, tuple[Component, Values]] | None:
-    """The elements that change, each with its values; None where more than elements does."""
-    owners, given = named(source), dict[str, tuple[Component, Values]]()
-    for name, value in changes.items():
-        aim = target(owners, name)
-        if aim is None or not isinstance(aim.owner, Component) or aim.owner.name in where.referred:
-            return None
-        given.setdefault(aim.owner.name, (aim.owner, []))[1].append((aim.path, _kept(value)))
-    return given
+@memoize
+def owners_of(system: System) -> Owners:
+    """Everything of the driveline of a System that has something to change, by name."""
+    return named(system.source or Model())
 
 
 def _right(given: Mapping[str, tuple[Component, Values]]) -> dict[str, tuple[Component, Component]] | None:
@@ -118,6 +152,8 @@ def _right(given: Mapping[str, tuple[Component, Values]]) -> dict[str, tuple[Com
 
 def _kept(value: Any) -> Any:
     """A value, or a copy of one that holds lists, which its owner may change later."""
+    if type(value) is list:
+        return [_kept(item) for item in value]
     try:
         hash(value)
     except TypeError:
@@ -147,30 +183,6 @@ def is_right(old: Component, new: Component) -> bool:
     if _plain_numbers(type(new)).issuperset((name,) for name, value in unlike.items() if value is not before.get(name)):
         return True
     return not any(component_advice(new)) and not any(temperature_advice([new], []))
-
-
-# what an element may say of its values together, and of what is made of them
-RULES = ("problems", "law_problems", "entries", "parts", "initial_states", "state_scales")
-
-
-def ruled(owner: Component, paths: Sequence[tuple[str, ...]]) -> Component | Law | None:
-    """What is to be looked at where numbers of an element are others within their bounds: itself, its law, or nothing.
-
-    Parameters: paths, of the fields that lead to the numbers.
-    """
-    law, own = owner.friction, _plain_numbers(type(owner))
-    known = own | {("friction", *path) for path in (_plain_numbers(type(law)) if isinstance(law, Law) else ())}
-    if not known.issuperset(paths) or any(getattr(type(owner), rule) is not getattr(Component, rule) for rule in RULES):
-        return owner
-    return None if own.issuperset(paths) else law
-
-
-def is_right_law(law: Law) -> bool:
-    """Whether there is no mistake in a law, and no advice about it."""
-    try:
-        return not any(law_problems(law, At("", ""))) and not any(law.advice())
-    except ArithmeticError:
-        return False
 
 
 @cache

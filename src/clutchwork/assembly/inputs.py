@@ -12,7 +12,7 @@ from clutchwork.assembly.records import Input, Link
 from clutchwork.base.classes import dataclass
 from clutchwork.declare.node import Node, Segment, Signal, ThermalNode, is_reference
 from clutchwork.declare.ports import ports, thermal_ports
-from clutchwork.declare.schema import Role, Spec, inputs
+from clutchwork.declare.schema import Role, Spec, inputs, specs
 from clutchwork.model.parts import role
 from clutchwork.signals.bases import waveform
 from clutchwork.signals.constant import Constant
@@ -25,6 +25,8 @@ if TYPE_CHECKING:
 
 # what a prescribed motion is in the core
 SPEED = Spec("signal", "rad/s", "speed")
+# what the temperature of an ambient is, which has no declaration of its own
+TEMPERATURE = Spec("signal", "K", "temperature of an ambient", above=0.0)
 # what an input may be, in the order of the numbers of its references
 SORTS = ("input", "shared", "rate", "heat")
 
@@ -44,37 +46,37 @@ class Wires:
         """Number the temperatures of ambients."""
         for node in thermal:
             if node.capacity is None:
-                self.ambients[node.name] = len(self.inputs)
-                self.inputs.append(Input(f"{node.name}.temperature", "K", plain_signal(node.temperature)))
+                self.ambients[node.name] = self._add(node, "temperature", "K", node.temperature, TEMPERATURE)
 
     def connect(self, component: Component) -> int:
         """Number the inputs of a component, those of a flow after the temperatures; the offset of the first one."""
         offset = len(self.refs)
         if role(component) is Role.FLOW:
             self.refs += [self._reference(node) for node in thermal_ports(component).values()]
-        self._connect(component, component, component.name)
+        self._connect(component, component, "")
         return offset
 
     def connect_law(self, contact: Any) -> int:
         """Number the inputs of the friction law of a contact; a temperature not given is that of its thermal node."""
         offset = len(self.refs)
-        self._connect(contact.friction, contact, f"{contact.name}.friction")
+        self._connect(contact.friction, contact, "friction.")
         return offset
 
-    def _connect(self, thing: Any, component: Any, path: str) -> None:
+    def _connect(self, thing: Any, component: Any, inside: str) -> None:
         for names, spec in inputs(type(thing)):
             name = next((name for name in names if getattr(thing, name) is not None), names[0])
             value = getattr(thing, name)
             if value is None and spec.unit == "K":
                 value = _warming(component)
-            unit = _unit(component, type(thing).__dataclass_fields__[name].metadata["spec"])
+            own, quantity = type(thing).__dataclass_fields__[name].metadata["spec"], f"{inside}{name}"
+            unit = _unit(component, own)
             if is_reference(value):
                 self.refs.append(self._reference(value))
                 self.rates = self.rates or (isinstance(value, Node) and role(component) in (Role.TORQUE, Role.CONTACT))
-                self._link(f"{path}.{name}", unit, *self.refs[-1])
+                self._link(f"{component.name}.{quantity}", unit, *self.refs[-1])
             else:
                 plain = spec.otherwise if value is None else value
-                number = self._add(f"{path}.{name}", unit, plain_signal(plain), given=value is not None)
+                number = self._add(component, quantity, unit, plain, own, given=value is not None)
                 self.refs.append(("input", number))
 
     def _reference(self, value: Any) -> tuple[str, int]:
@@ -88,11 +90,11 @@ class Wires:
 
     def prescribe(self, motions: Sequence[tuple[Component, Signal]]) -> list[int]:
         """Number the prescribed speeds, which no reference leads to."""
-        units = [_unit(motion, SPEED) for motion, _ in motions]
-        return [self._add(f"{m.name}.speed", unit, s) for (m, s), unit in zip(motions, units, strict=True)]
+        return [self._add(one, "speed", _unit(one, SPEED), signal, _speed(one)) for one, signal in motions]
 
-    def _add(self, name: str, unit: str, signal: Signal, given: bool = True) -> int:
-        self.inputs.append(Input(name, unit, signal, given))
+    def _add(self, owner: Any, quantity: str, unit: str, value: Any, spec: Spec, given: bool = True) -> int:
+        name = f"{owner.name}.{quantity}"
+        self.inputs.append(Input(name, unit, plain_signal(value), spec, owner, quantity, given))
         return len(self.inputs) - 1
 
     def arrays(self) -> dict[str, Any]:
@@ -123,6 +125,11 @@ def _warming(component: Component) -> ThermalNode | None:
 def plain_signal(value: Any) -> Signal:
     """A signal, or a number as one."""
     return value if isinstance(value, Signal) else Constant(float(value or 0.0))
+
+
+def _speed(motion: Component) -> Spec:
+    """What a prescribed speed may be; that which follows from a position is bounded by nothing."""
+    return next((spec for item, spec in specs(type(motion), "signal", "alternative") if item.name == "speed"), SPEED)
 
 
 def _unit(component: Component, spec: Spec) -> str:

@@ -2,30 +2,31 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from fractions import Fraction
 from functools import cached_property
 from math import inf
 from typing import TYPE_CHECKING, Any
 
-import numpy as np
-from numpy.typing import NDArray
-
-from clutchwork.assembly.assemble import SpeedColumns, assembled, chosen, mass_arrays
+from clutchwork.assembly.assemble import SpeedColumns, assembled, chosen
+from clutchwork.assembly.patches import Patch, patched
+from clutchwork.assembly.sparse import supports
 from clutchwork.base.classes import dataclass
 from clutchwork.base.errors import ModelError
 from clutchwork.base.memoize import memoize
-from clutchwork.declare.rational import exact
+from clutchwork.declare.node import Component
+from clutchwork.declare.rational import ZERO, exact
 from clutchwork.model.changes import all_names, changed_model, named, target
 from clutchwork.model.findings import findings
 from clutchwork.model.kinematics import order
-from clutchwork.model.structure import Kinematics
 
 if TYPE_CHECKING:
     from clutchwork.assembly.system import System
+    from clutchwork.model.findings import Structure
     from clutchwork.model.model import Model
 
-Arrays = Mapping[str, NDArray[Any]]
+# an array and a place in it, in flat order
+Word = tuple[str, int]
 
 # by one to two such shares of their size all inertias are moved, each by another one, to see that no more follows from
 # them; the heavier of two by more, so that their order stays
@@ -34,29 +35,32 @@ PROBE = 1e-3
 
 @dataclass(frozen=True, eq=False)
 class Masses:
-    """Inertias of the nodes of a driveline, and how its mass matrix follows from them."""
+    """Inertias of the nodes of a driveline, and how its mass matrix is their sum, in fractions."""
 
     inertia: tuple[Fraction, ...]
     places: Mapping[str, int]  # of nodes that have some, by the name of their inertia
-    made: Kinematics
-    columns: SpeedColumns
     wanted: tuple[int, ...]  # nodes whose speeds were asked for
-    pattern: tuple[list[int], list[int]]  # ends and columns of the rows of the matrix
+    shares: Sequence[Mapping[Word, Fraction]]  # of each node: derivatives of the words of the matrix
+    matrix: Mapping[Word, Fraction]
 
     @classmethod
     def of(cls, system: System, source: Model) -> Masses | None:
         """Those of a System; None where more follows from them, as the weight of a vehicle, or other speeds."""
         found = findings(source).structure
-        if found is None:
+        if found is None or any(map(_judges, source.elements)):
             return None
         names = [node.name for node in found.mechanism.nodes]
         where = {id(node): place for place, node in enumerate(source.nodes) if node.inertia > 0.0}
         aims = ((name, target(named(source), name)) for name in all_names(source) if is_mass(name))
         places = {name: where[id(aim.owner)] for name, aim in aims if aim and id(aim.owner) in where}
-        made, _, _ = chosen(found, system.wanted)
-        pattern = system.arrays["mass_end"].tolist(), system.arrays["mass_column"].tolist()
+        inertia, shares, matrix = tuple(found.mechanism.inertia), _shares(system, found), dict[Word, Fraction]()
+        for own, share in zip(inertia, shares, strict=True):
+            for word, factor in share.items():
+                matrix[word] = matrix.get(word, ZERO) + own * factor
+        # where a sum is zero by chance the matrix has no word for it
+        known = {name: place for name, place in places.items() if all(place >= 0 for _, place in shares[place])}
         wanted = tuple(names.index(name) for name in system.wanted)
-        masses = cls(tuple(found.mechanism.inertia), places, made, SpeedColumns(found.mechanism, made), wanted, pattern)
+        masses = cls(inertia, known, wanted, shares, matrix)
         return masses if masses._is_all(system, source) else None
 
     def _is_all(self, system: System, source: Model) -> bool:
@@ -65,32 +69,76 @@ class Masses:
         share = {name: 1.0 + PROBE * (1.0 + rank[place]) for name, place in self.places.items()}
         moved = {name: float(self.inertia[place]) * share[name] for name, place in self.places.items()}
         given = assembled(changed_model(source, moved), system.wanted)["arrays"]
-        own = {**system.arrays, **(self.arrays(moved) or {})}
+        own = patched(system.arrays, self.patches(moved) or [])
         return all(given[name].tobytes() == array.tobytes() for name, array in own.items())
 
     @cached_property
     def _order(self) -> list[int]:
         return order(self.inertia, self.wanted)
 
-    def arrays(self, changes: Mapping[str, float]) -> Arrays | None:
-        """The arrays that other inertias change; None where others change too.
+    def patches(self, changes: Mapping[str, Any]) -> list[Patch] | None:
+        """The words of other inertias; None where others change too.
 
         Parameters: changes, values by name.
         """
-        if not changes.keys() <= self.places.keys() or not all(0.0 < value < inf for value in changes.values()):
+        if not changes.keys() <= self.places.keys() or not all(map(_is_inertia, changes.values())):
             return None
-        inertia = list(self.inertia)
+        inertia, sums = list(self.inertia), dict[Word, Fraction]()
         for name, value in changes.items():
-            inertia[self.places[name]] = exact(value)
+            place = self.places[name]
+            inertia[place] = exact(value)
+            more = inertia[place] - self.inertia[place]
+            for word, factor in self.shares[place].items():
+                sums[word] = sums.get(word, self.matrix[word]) + more * factor
         if order(inertia, self.wanted) != self._order:
             return None
-        try:
-            found = mass_arrays(inertia, self.made, self.columns)
-        except ArithmeticError:
-            return None
-        made = {name: np.array(found[name], dtype=float) for name in ("mass_value", "mass_prescribed")}
-        made["inertia"] = np.array([float(value) for value in inertia])
-        return made if (found["mass_end"], found["mass_column"]) == self.pattern else None
+        found = [Patch("inertia", self.places[name], [float(value)]) for name, value in changes.items()]
+        for (array, place), total in sums.items():
+            try:
+                # the quotient of two whole numbers is rounded once
+                value = total.numerator / total.denominator
+            except OverflowError:
+                return None
+            if not value and array == "mass_value":
+                return None
+            found.append(Patch(array, place, [value]))
+        return found
+
+    def derivatives(self, name: str) -> Mapping[Word, float]:
+        """Derivatives of the words by an inertia, which hold wherever the same speeds are independent."""
+        place = self.places[name]
+        return {("inertia", place): 1.0} | {word: float(factor) for word, factor in self.shares[place].items()}
+
+
+def _is_inertia(value: Any) -> bool:
+    return type(value) in (float, int) and 0.0 < value < inf
+
+
+def _judges(element: Component) -> bool:
+    """Whether an element of another package has rules, which may look at inertias."""
+    kind = type(element)
+    return kind.problems is not Component.problems and not kind.__module__.startswith("clutchwork.")
+
+
+def _shares(system: System, found: Structure) -> list[dict[Word, Fraction]]:
+    """Derivatives of the words of the mass matrix by each inertia; a place below 0: the matrix has no such word."""
+    made, _, _ = chosen(found, system.wanted)
+    columns = SpeedColumns(found.mechanism, made)
+    known = [(row, place) for row, places in enumerate(supports(system.arrays, "mass")) for place in places]
+    number, width = {entry: place for place, entry in enumerate(known)}, len(columns.prescribed)
+    # what follows from a transmission has no inertia
+    rows = {node: row for row, node in enumerate(made.independent) if node not in made.followers.values()}
+
+    def words(speed: Mapping[int, Fraction]) -> Iterator[tuple[Word, Fraction]]:
+        for node in speed.keys() & rows.keys():
+            for column, value in speed.items():
+                if column in columns.speeds:
+                    word = ("mass_value", number.get((rows[node], columns.speeds[column]), -1))
+                else:
+                    word = ("mass_prescribed", rows[node] * width + columns.prescribed[column])
+                yield word, speed[node] * value
+
+    return [dict(words(speed)) for speed in made.speeds]
 
 
 def is_mass(name: str) -> bool:

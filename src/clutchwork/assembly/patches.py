@@ -13,6 +13,7 @@ from clutchwork.declare.node import Component, HeatFlow, Node, Rate, ThermalNode
 from clutchwork.declare.schema import Role, inputs, specs
 from clutchwork.model.parts import is_open, is_stop, role
 from clutchwork.model.pools import Pools
+from clutchwork.model.structure import follows_load
 from clutchwork.signals.bases import waveform
 
 if TYPE_CHECKING:
@@ -96,6 +97,8 @@ def patches(where: Numbered, old: Any, new: Any) -> list[Patch]:
         raise Unpatched
     if type(old).ways and old.directions() != new.directions():
         raise Unpatched
+    if follows_load(old) and _rows(old) != _rows(new):
+        raise Unpatched
     if is_stop(old) and (old.initial_states() != new.initial_states() or is_open(old)):
         # its position is the state of an element of its own, and may follow from what moves its mass
         raise Unpatched
@@ -107,6 +110,11 @@ def patches(where: Numbered, old: Any, new: Any) -> list[Patch]:
     found = list(_parameters(where, old, new))
     found += [patch for name, signal in changed_signals(old, new) for patch in signal_patches(where, name, signal)]
     return [*found, *_start(where, old, new)]
+
+
+def _rows(contact: Any) -> Any:
+    """Those of a contact that is a gear with friction."""
+    return contact.rows()
 
 
 def _thermal(where: Numbered, old: ThermalNode, new: ThermalNode) -> Iterator[Patch]:

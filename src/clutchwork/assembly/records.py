@@ -10,7 +10,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from clutchwork.base.classes import dataclass
-from clutchwork.declare.node import Component, Signal
+from clutchwork.declare.node import Component, Signal, ThermalNode
+from clutchwork.declare.schema import Spec
 
 TYPES: dict[str, np.dtype[Any]] = {"f8": np.dtype("<f8"), "i4": np.dtype("<i4")}
 Array = NDArray[Any]
@@ -23,6 +24,9 @@ class Input:
     name: str
     unit: str
     signal: Signal
+    spec: Spec  # what it may be
+    owner: Component | ThermalNode  # whose it is
+    quantity: str  # its name there, "friction.load"
     given: bool = True  # false: a feature that nobody asked for, which rests at its value
 
 

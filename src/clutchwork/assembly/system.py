@@ -13,9 +13,10 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from clutchwork.assembly.assemble import assembled
-from clutchwork.assembly.changes import UNKNOWN_SOURCE, Quick, changed, quick
+from clutchwork.assembly.changes import GROUPS, UNKNOWN_SOURCE, Quick, changed, quick
 from clutchwork.assembly.dependence import dependent_sets
 from clutchwork.assembly.patches import Numbered, numbered
+from clutchwork.assembly.provenance import Parameters
 from clutchwork.assembly.records import TYPES, Array, Gearing, Input, Link, frozen
 from clutchwork.assembly.sparse import dense, entries
 from clutchwork.assembly.storage_bounds import rooms
@@ -28,7 +29,6 @@ from clutchwork.declare.core import core
 from clutchwork.declare.layout import COUNTS, FIELDS, SPARSE
 from clutchwork.declare.node import Component, Node, ShiftTable, ThermalNode
 from clutchwork.declare.schema import Role
-from clutchwork.model.changes import renewed
 from clutchwork.model.findings import may_change
 from clutchwork.model.model import Model
 from clutchwork.model.settings import plain_settings
@@ -45,6 +45,8 @@ CALLS = {
     "sweep": "; cw.sweep(system, t_end, vary=..., outputs=...) does it",
     "gradient": "; cw.differentiable(system, t_end, of=..., by=...).gradient() does it",
 }
+# what of a changed System is made where it is asked for, and where it is noted what that is made of
+LATER, CHANGE = frozenset((*GROUPS, "nodes", "gears", "inputs", "source")), "_change"
 # of a file that holds a System
 PARTS = ("content", "model", "independent")
 
@@ -65,25 +67,26 @@ class System:
 
     name: str
     arrays: Mapping[str, Array]
-    nodes: tuple[Node, ...] = ()
-    elements: tuple[Component, ...] = ()
-    contacts: tuple[Component, ...] = ()
-    motions: tuple[Component, ...] = ()
-    gears: tuple[Gearing, ...] = ()
-    sensors: tuple[Component, ...] = ()
+    nodes: tuple[Node, ...] = field(default_factory=tuple)
+    elements: tuple[Component, ...] = field(default_factory=tuple)
+    contacts: tuple[Component, ...] = field(default_factory=tuple)
+    motions: tuple[Component, ...] = field(default_factory=tuple)
+    gears: tuple[Gearing, ...] = field(default_factory=tuple)
+    sensors: tuple[Component, ...] = field(default_factory=tuple)
     thermal: tuple[ThermalNode, ...] = ()
-    flows: tuple[Component, ...] = ()
-    processes: tuple[Component, ...] = ()
-    inputs: tuple[Input, ...] = ()
+    flows: tuple[Component, ...] = field(default_factory=tuple)
+    processes: tuple[Component, ...] = field(default_factory=tuple)
+    inputs: tuple[Input, ...] = field(default_factory=tuple)
     links: tuple[Link, ...] = ()
     gearboxes: tuple[ShiftTable, ...] = ()  # gears by name
     sums: Mapping[str, tuple[str, ...]] = field(default_factory=dict)  # "c1" -> parts that count as "c1"
     independent: tuple[str, ...] = ()  # names of the nodes with independent speeds
-    parameters: Mapping[str, int] = field(default_factory=dict)  # "c1.gain" -> place in params
+    places: Mapping[str, int] = field(default_factory=dict)  # "c1.gain" -> place in params
     notes: tuple[str, ...] = ()
     warnings: tuple[str, ...] = ()  # what the driveline was warned of when it was assembled
     settings: Mapping[str, Any] = field(default_factory=dict)  # of its runs, as in [simulation] of a model file
-    source: Model | None = field(default=None, repr=False)  # the driveline, as it was when it was assembled
+    # the driveline, as it was when it was assembled
+    source: Model | None = field(default_factory=lambda: None, repr=False)
     wanted: tuple[str, ...] = ()  # names of the independent speeds where they were asked for
 
     def __repr__(self) -> str:
@@ -101,13 +104,26 @@ class System:
         return bundle(self, "system")
 
     def __getattr__(self, name: str) -> Array:
+        own = self.__dict__
+        if name in LATER:
+            change = own.get(CHANGE)
+            found: Array = own[name] if change is None else self._later(name, *change)
+            return found
         try:
-            arrays = self.__dict__["arrays"]
+            arrays = own["arrays"]
             return dense(arrays, name) if name in SPARSE else arrays[name]
         except KeyError:
             known = [*SPARSE, *(n for n, *_ in FIELDS)]
             told = CALLS.get(name) or near(name, known)
             raise AttributeError(f"a System has no {name!r}{told}") from None
+
+    def _later(self, name: str, old: System, found: Quick) -> Any:
+        """What of a changed System is made where it is asked for."""
+        made = {"source": old.source and found.source(old.source)} if name == "source" else found.content(old)
+        for item, value in made.items():
+            # what another thread made first stays
+            self.__dict__.setdefault(item, value)
+        return self.__dict__[name]
 
     def __getstate__(self) -> dict[str, Any]:
         # a view of a dictionary cannot be pickled; what was found since comes again
@@ -168,9 +184,9 @@ class System:
             raise UseError("changed", [f"changes is {quote(changes)}: {remedy}"])
         if self.source is None:
             raise ModelError([UNKNOWN_SOURCE])
-        # what is warned of is looked at as a whole
-        found = None if self.warnings else quick(self.source, self.numbered, changes)
-        if found is not None:
+        found = quick(self, changes)
+        # elements that are warned of are looked at as a whole
+        if found is not None and not (self.warnings and found.values):
             return self._with(found)
         source, made, advice = changed(self.source, self.wanted, len(self.independent), changes)
         for one in advice:
@@ -190,24 +206,35 @@ class System:
         return numbered(self.arrays, groups, self.inputs, self.thermal, self.nodes, self.source or Model())
 
     def _with(self, found: Quick) -> System:
-        """The same structure with other elements."""
-        content, values = {item.name: vars(self)[item.name] for item in fields(self)}, found.values
-        # on the shafts of this System, which are not those of its source
-        for group in ("elements", "contacts", "flows", "processes"):
-            parts = content[group]
-            if any(part.name in values for part in parts):
-                content[group] = tuple(renewed(p, values[p.name]) if p.name in values else p for p in parts)
-        inputs = list(self.inputs)
-        for number, signal in found.signals.items():
-            inputs[number] = replace(inputs[number], signal=signal)
-        content["inputs"] = tuple(inputs)
+        """The same structure with other numbers."""
+        # of changes of changes none waits for another
+        own = {item.name: getattr(self, item.name) for item in fields(self)}
+        vars(self).pop(CHANGE, None)
+        data = bytearray(self.to_bytes())
         for name, array in found.arrays.items():
             if array is not self.arrays[name]:
                 array.flags.writeable = False
-        made = object.__new__(System)
-        vars(made).update(content | {"arrays": MappingProxyType(found.arrays), "source": found.source})
-        vars(made)["numbered"] = self.numbered._replace(arrays=made.arrays)
+                data[self.starts[name] : self.starts[name] + array.nbytes] = array.tobytes()
+        made, arrays = object.__new__(System), MappingProxyType(found.arrays)
+        vars(made).update({name: value for name, value in own.items() if name not in LATER})
+        vars(made).update({"arrays": arrays, "numbered": self.numbered._replace(arrays=arrays), CHANGE: (self, found)})
+        # what follows from its structure alone
+        vars(made).update({"counts": self.counts, "starts": self.starts, "_bytes": bytes(data)})
         return made
+
+    @property
+    def parameters(self) -> Parameters:
+        """All that may be changed, by name: its value, unit and bounds, the words that it reaches, and when it may."""
+        return Parameters(self)
+
+    @cached_property
+    def starts(self) -> Mapping[str, int]:
+        """Where each array begins in the bytes of `to_bytes`."""
+        starts, at = {}, 16 + 8 * len(COUNTS)
+        for name, _, _, _ in FIELDS:
+            starts[name] = at
+            at += -(-self.arrays[name].nbytes // 8) * 8
+        return MappingProxyType(starts)
 
     def to_bytes(self) -> bytes:
         """The System as the compiled core reads it: little endian, every array aligned to 8 bytes; made once."""

@@ -68,7 +68,7 @@ class Exported:
     def settable(self) -> dict[str, int]:
         """Parameters and their places, without those that are fixed when a run is loaded."""
         run, values = new_run(self.data), self.system.arrays["params"]
-        return {path: k for path, k in self.system.parameters.items() if run.is_settable(k, float(values[k]))}
+        return {path: k for path, k in self.system.places.items() if run.is_settable(k, float(values[k]))}
 
     @property
     def instants(self) -> int:

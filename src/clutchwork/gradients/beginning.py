@@ -46,10 +46,10 @@ def at_rest(chart: Chart, words: Array, slopes: Slopes) -> Iterator[tuple[str, M
 
 def _driven(chart: Chart, number: int) -> Places:
     """Words of prescribed speeds that are in the slip of a contact."""
-    system, layout = chart.assembled.system, chart.assembled.structure.layout
+    system = chart.assembled.system
     shares, found = system.arrays["contact_rate_prescribed"], [np.zeros(0, dtype=np.intp)]
     for signal in system.arrays["prescribed_input"][np.flatnonzero(shares[number])] if shares.size else ():
         first, count = (int(system.arrays[f"input_{what}"][signal]) for what in ("first", "count"))
-        begin = layout.starts["segment_coef"] // 8 + PIECE * first
+        begin = system.starts["segment_coef"] // 8 + PIECE * first
         found.append(np.arange(begin, begin + PIECE * count))
     return np.concatenate(found)

@@ -5,14 +5,15 @@ from __future__ import annotations
 import re
 from collections.abc import Iterable, Iterator, Sequence
 from itertools import groupby
-from math import inf, nextafter
+from math import inf
 from numbers import Real
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from clutchwork.assembly.changes import UNKNOWN_SOURCE
+from clutchwork.assembly.changes import UNKNOWN_SOURCE, owners_of
+from clutchwork.assembly.provenance import bounds_of
 from clutchwork.base.classes import dataclass
 from clutchwork.base.errors import ModelError, UseError, advised
 from clutchwork.base.quote import quote
@@ -21,7 +22,6 @@ from clutchwork.model.changes import Owners, Target, changeable, field_of, named
 
 if TYPE_CHECKING:
     from clutchwork.assembly.system import System
-    from clutchwork.declare.schema import Spec
     from clutchwork.model.model import Model
 
 Array = NDArray[np.float64]
@@ -114,16 +114,7 @@ def _number(aim: Target, name: str) -> Tunable:
     if spec.what == "option" and aim.path[-1] == "tolerance" and not start:
         # contacts lock at the exact zero of their slip, which no value beside it does
         raise Unfit(f"{name} is 0, the exact zero of the slip, beside which there is another rule; give it a value")
-    return Tunable(name, name, (), unit_of(aim), start, abs(start) or 1.0, *_bounds(spec))
-
-
-def _bounds(*found: Spec) -> tuple[float, float]:
-    """What all declarations allow."""
-    lower = [nextafter(spec.above, inf) for spec in found if spec.above is not None]
-    upper = [nextafter(spec.below, -inf) for spec in found if spec.below is not None]
-    lower += [spec.at_least for spec in found if spec.at_least is not None]
-    upper += [spec.at_most for spec in found if spec.at_most is not None]
-    return max(lower, default=-inf), min(upper, default=inf)
+    return Tunable(name, name, (), unit_of(aim), start, abs(start) or 1.0, *bounds_of(spec))
 
 
 def _inside(value: Any, name: str) -> str:
@@ -163,7 +154,7 @@ def _entries(table: Target, name: str, which: str) -> Iterator[Tunable]:
     else:
         found, unit = list(_knots(value)), spec.unit_x
     gaps = np.diff([one for _, _, one in found]) if which == abscissae else np.zeros(0)
-    bounds = _bounds(*declared) if which == "values" else (-inf, inf)
+    bounds = bounds_of(*declared) if which == "values" else (-inf, inf)
     reach, scale = float(np.min(gaps, initial=inf)), max(abs(one) for _, _, one in found) or 1.0
     for words, places, one in found:
         yield Tunable(f"{name}.{which}{words}", field, places, unit, one, scale, *bounds, reach)
@@ -191,10 +182,9 @@ def _words(place: Sequence[int]) -> str:
 
 def changes(system: System, chosen: Sequence[Tunable], x: Array) -> dict[str, Any]:
     """What `System.changed` is given for the values of parameters."""
-    owners = named(system.source) if system.source else Owners()
     made = dict[str, Any]()
     for one, value in zip(chosen, x.tolist(), strict=True):
-        aim = target(owners, one.field) if one.places and one.field not in made else None
+        aim = target(owners_of(system), one.field) if one.places and one.field not in made else None
         if aim is not None:
             made[one.field] = _lists(field_of(aim)[0])
         for place in one.places or ((),):

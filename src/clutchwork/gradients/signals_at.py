@@ -10,10 +10,10 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
+from clutchwork.assembly.provenance import PROBES
 from clutchwork.assembly.wiring import wiring
 from clutchwork.base.classes import dataclass
 from clutchwork.base.errors import ModelError
-from clutchwork.gradients.discovery import PROBES
 from clutchwork.gradients.finite_differences import Bent, slope
 from clutchwork.gradients.words import Words
 from clutchwork.results.channels import channels

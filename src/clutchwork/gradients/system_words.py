@@ -9,19 +9,15 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
-from clutchwork.assembly.masses import is_mass, masses
 from clutchwork.base.classes import dataclass
 from clutchwork.base.errors import ModelWarning
-from clutchwork.base.memoize import memoize
 from clutchwork.declare.layout import FIELDS
 from clutchwork.gradients.parameters import Tunable, changes
-from clutchwork.sweeps.system_words import SystemLayout
 
 if TYPE_CHECKING:
     from clutchwork.assembly.system import System
 
 Array = NDArray[np.float64]
-Places = NDArray[np.int64]
 
 
 def words_of(system: System) -> Array:
@@ -39,27 +35,7 @@ def made(system: System, parameters: Sequence[Tunable], x: Array) -> System:
 
 def words_made(system: System, parameters: Sequence[Tunable], x: Array) -> Array:
     """The words of a System with other values, as those of `made`."""
-    found = with_masses(system, parameters, x)
-    return words_of(made(system, parameters, x)) if found is None else found
-
-
-def with_masses(system: System, parameters: Sequence[Tunable], x: Array) -> Array | None:
-    """The same where the numbers are inertias, and nothing but the mass matrix follows from them; else None."""
-    known = masses(system) if parameters and all(is_mass(one.field) for one in parameters) else None
-    changes = {one.field: value for one, value in zip(parameters, x.tolist(), strict=True)}
-    found = None if known is None else known.arrays(changes)
-    if found is None:
-        return None
-    words, starts = words_of(system).copy(), layout(system).starts
-    for name, array in found.items():
-        words[starts[name] // 8 : starts[name] // 8 + array.size] = array.ravel()
-    return words
-
-
-@memoize
-def layout(system: System) -> SystemLayout:
-    """Where the arrays of a System begin, found once."""
-    return SystemLayout.of(system)
+    return words_of(made(system, parameters, x))
 
 
 def finite(words: Array) -> Array:
@@ -73,18 +49,17 @@ class WordStructure:
 
     words: Array
     is_number: NDArray[np.bool_]
-    layout: SystemLayout
 
     @classmethod
     def of(cls, system: System) -> WordStructure:
         """That of a System."""
-        where, words = layout(system), words_of(system)
+        words = words_of(system)
         is_number = np.zeros(len(words), dtype=bool)
         for name, kind, _, _ in FIELDS:
             if kind == "f8":
-                first = where.starts[name] // 8
+                first = system.starts[name] // 8
                 is_number[first : first + system.arrays[name].size] = True
-        return cls(words, is_number, where)
+        return cls(words, is_number)
 
     def is_that_of(self, words: Array) -> bool:
         """Whether other words are built alike: they have the same length, and the same words that are not numbers."""
@@ -92,7 +67,3 @@ class WordStructure:
             return False
         fixed = ~self.is_number
         return np.array_equal(words.view(np.int64)[fixed], self.words.view(np.int64)[fixed])
-
-    def changed(self, words: Array) -> Places:
-        """Places of words that are others."""
-        return np.flatnonzero(words.view(np.int64) != self.words.view(np.int64))

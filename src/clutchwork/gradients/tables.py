@@ -4,20 +4,17 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from functools import cached_property
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
 
 from clutchwork.base.classes import dataclass
-from clutchwork.declare.node import Signal
 from clutchwork.gradients.parameters import Tunable
-from clutchwork.model.changes import Target, field_of, named, target
 from clutchwork.signals.table import Table
 
 if TYPE_CHECKING:
     from clutchwork.assembly.system import System
-    from clutchwork.sweeps.system_words import SystemLayout
 
 Array = NDArray[np.float64]
 Places = NDArray[np.int64]
@@ -37,36 +34,30 @@ class TableWords:
     begins: Places  # knots at which pieces begin, -1: before the first one
     copies: int  # signals that it is
     places: Places  # words of all starts, values and slopes
-    at_start: Places  # words of the value at 0, one for each signal
 
     @classmethod
-    def of(
-        cls, system: System, beside: System, layout: SystemLayout, field: str, free: Sequence[tuple[int, Tunable]]
-    ) -> TableWords | None:
-        """The words of a table of a System; None where it is more than a signal of its own.
+    def of(cls, system: System, inputs: Sequence[int], free: Sequence[tuple[int, Tunable]]) -> TableWords | None:
+        """The words of a table of a System; None where the signal is another one.
 
-        Parameters: beside, the same System with other values in the table; field, the name of its points; free, its
-        parameters with their numbers.
+        Parameters: inputs, numbers of the signals that it is; free, its parameters with their numbers.
         """
-        points, moved = _points(system, field), _points(beside, field)
-        if points is None or moved is None:
+        signal = system.inputs[inputs[0]].signal
+        if type(signal).segments is not Table.segments:
             return None
+        points = np.array([[float(x), float(y)] for x, y in vars(signal)["points"]])
         begins = pieces(points)
-        both = zip(system.inputs, beside.inputs, strict=True)
-        inputs = [i for i, (here, there) in enumerate(both) if _is(here.signal, points) and _is(there.signal, moved)]
-        first = np.array([system.arrays["input_first"][number] for number in inputs], dtype=np.int64)
-        if not inputs or any(system.arrays["input_count"][number] != len(begins) for number in inputs):
+        first = system.arrays["input_first"][list(inputs)].astype(np.int64)
+        if any(system.arrays["input_count"][number] != len(begins) for number in inputs):
             return None
         along = np.zeros((len(free), *points.shape))
         for line, (_, one) in zip(along, free, strict=True):
             for place in one.places:
                 line[place] = 1.0
         rows = (first[:, None] + np.arange(len(begins))).ravel()
-        coef = layout.starts["segment_coef"] // 8 + 12 * rows
-        places = np.concatenate([layout.starts["segment_time"] // 8 + rows, coef, coef + 1])
-        at_start = layout.starts["input_value"] // 8 + np.array(inputs, dtype=np.int64)
+        coef = system.starts["segment_coef"] // 8 + 12 * rows
+        places = np.concatenate([system.starts["segment_time"] // 8 + rows, coef, coef + 1])
         numbers = np.array([number for number, _ in free])
-        return cls(points, numbers, along, begins, len(inputs), places, at_start)
+        return cls(points, numbers, along, begins, len(inputs), places)
 
     @cached_property
     def _free(self) -> tuple[Places, Places, Places]:
@@ -80,16 +71,9 @@ class TableWords:
         made[knots, columns] = x[numbers]
         return made
 
-    def written(self, words: Array, x: Array) -> bool:
-        """Write the words for values of all parameters; False where these make other pieces."""
-        points = self.moved(x)
-        if self.moves_times and not (
-            np.all(np.diff(points[:, 0]) >= 0.0) and np.array_equal(pieces(points), self.begins)
-        ):
-            return False
-        numbers, at_start = numbers_of(points, self.begins)
-        words[self.places], words[self.at_start] = np.repeat(numbers, self.copies, axis=0).ravel(), at_start
-        return True
+    def holds(self, x: Array) -> bool:
+        """Whether the pieces begin at the same knots for values of all parameters."""
+        return not self.moves_times or np.array_equal(pieces(self.moved(x)), self.begins)
 
     @cached_property
     def moves_times(self) -> bool:
@@ -109,43 +93,12 @@ class TableWords:
         return np.repeat(found, self.copies, axis=1).reshape(len(found), -1).T
 
 
-def _points(system: System, field: str) -> Array | None:
-    """The knots of a signal that is a table, None where it is another one."""
-    aim = target(named(system.source), field) if system.source else None
-    if aim is None or len(aim.path) < 2:
-        return None
-    signal, _ = field_of(Target(aim.owner, aim.path[:-1]))
-    return _as_array(signal)
-
-
-def _as_array(signal: Any) -> Array | None:
-    if not isinstance(signal, Signal) or type(signal).segments is not Table.segments:
-        return None
-    return np.array([[float(x), float(y)] for x, y in vars(signal)["points"]])
-
-
-def _is(signal: Signal, points: Array) -> bool:
-    own = _as_array(signal)
-    return own is not None and np.array_equal(own, points)
-
-
 def pieces(points: Array) -> Places:
     """Knots at which the pieces of a table begin, -1 for a constant one before the first."""
     count = len(points)
     begins = np.flatnonzero(np.diff(points[:, 0]) > 0.0)
     before = [-1] if points[0, 0] > 0.0 else []
     return np.array([*before, *begins.tolist(), count - 1], dtype=np.int64)
-
-
-def numbers_of(points: Array, begins: Places) -> tuple[Array, float]:
-    """Starts, values and slopes of the pieces, and the value at 0."""
-    made, inner = np.zeros((3, len(begins))), begins[_is_sloped(points, begins)]
-    made[:2] = points[np.maximum(begins, 0)].T
-    made[0, begins < 0] = 0.0
-    step = points[inner + 1] - points[inner]
-    made[2, _is_sloped(points, begins)] = step[:, 1] / step[:, 0]
-    now = max(int(np.searchsorted(made[0], 0.0, "right")) - 1, 0)
-    return made, float(made[1, now] + (0.0 - made[0, now]) * made[2, now])
 
 
 def derivatives(points: Array, along: Array, begins: Places) -> Array:

@@ -1,19 +1,21 @@
-"""How the words of one structure of a driveline follow from numbers: written in place, or assembled."""
+"""How the words of one structure of a driveline follow from numbers: they are these, or are assembled from them."""
 
 from __future__ import annotations
 
 from bisect import bisect_left
+from collections.abc import Sequence
+from contextlib import suppress
 from functools import cached_property
 from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
+from clutchwork.assembly.provenance import PROBES, Parameter, parameter
 from clutchwork.base.classes import dataclass
 from clutchwork.base.errors import ModelError
 from clutchwork.gradients.assembled import Assembled
-from clutchwork.gradients.discovery import identity, tables, together
-from clutchwork.gradients.system_words import WordStructure
+from clutchwork.gradients.system_words import WordStructure, made, words_of
 from clutchwork.gradients.tables import TableWords
 
 if TYPE_CHECKING:
@@ -49,93 +51,98 @@ class Slopes(NamedTuple):
 
 @dataclass(frozen=True, eq=False)
 class Chart:
-    """The words as functions of numbers, as long as the structure stays."""
+    """How the words of one structure of a driveline follow from numbers."""
 
-    scalars: dict[int, Places]  # words that are a number themselves
+    fixed: dict[int, Parameter]  # numbers that words are, or are sums of: derivatives are the same everywhere
     tables: tuple[TableWords, ...]
-    bound: list[int]  # numbers that words are assembled from
-    assembled: Assembled
-    zeros: NDArray[np.bool_]  # numbers that are zero here: with another one an element may have a state more
+    assembled: Assembled  # all others
+
+    @property
+    def bound(self) -> tuple[int, ...]:
+        """Numbers that words are assembled from."""
+        return self.assembled.numbers
 
     def words_in(self, name: str) -> tuple[int, int]:
         """The first word of an array of a System, and how many there are."""
-        return self.assembled.structure.layout.starts[name] // 8, self.assembled.system.arrays[name].size
+        return self.assembled.system.starts[name] // 8, self.assembled.system.arrays[name].size
 
     @classmethod
     def of(cls, system: System, parameters: tuple[Tunable, ...], x: Array) -> Chart:
         """Look at how the words of a System, which has these values, follow from them."""
         structure = WordStructure.of(system)
-        found = ((n, identity(system, structure, one, float(x[n]))) for n, one in enumerate(parameters))
-        scalars = {number: places for number, places in found if places is not None}
-        signals = tuple(tables(system, structure, parameters))
-        for written in (scalars, {}):
-            chart = cls._with(system, structure, parameters, x, written, signals)
-            held = chart.holds(together(system, parameters, x, []))
-            # numbers that are assembled may make another structure
-            if chart.holds(together(system, parameters, x, chart.bound)) if held is None else held:
-                return chart
-        return cls._with(system, structure, parameters, x, {}, ())
+        known = _known(system, structure, parameters, x)
+        fixed, tables = dict[int, Parameter](), list[TableWords]()
+        for name, own in known.items():
+            free = [(number, one) for number, one in enumerate(parameters) if one.field == name]
+            # what goes into a word together with others is assembled, but sums stand beside each other
+            beside = [one.words for one in known.values() if one is not own and not (own.is_sum and one.is_sum)]
+            if np.isin(own.words, np.concatenate([own.words[:0], *beside])).any():
+                continue
+            if own.derivative is not None and _is_same(own, parameter(system, name)):
+                fixed[free[0][0]] = own
+            elif own.is_signal and free[0][1].places:
+                found = TableWords.of(system, own.inputs, free)
+                tables += [found] if found else []
+        used = {*fixed, *(number for table in tables for number in table.numbers.tolist())}
+        rest = tuple(number for number in range(len(x)) if number not in used)
+        return cls(fixed, tuple(tables), Assembled(system, structure, parameters, x, rest))
 
-    @classmethod
-    def _with(
-        cls,
-        system: System,
-        structure: WordStructure,
-        parameters: tuple[Tunable, ...],
-        x: Array,
-        scalars: dict[int, Places],
-        signals: tuple[TableWords, ...],
-    ) -> Chart:
-        written = {*scalars, *(number for table in signals for number in table.numbers)}
-        bound = [number for number in range(len(x)) if number not in written]
-        chosen = tuple(parameters[number] for number in bound)
-        return cls(scalars, signals, bound, Assembled(system, structure, chosen, x[bound]), x == 0.0)
-
-    def holds(self, given: tuple[Array, Array]) -> bool | None:
-        """Whether the words at a point are those that are given; None where the structure is another one there."""
-        there, words = given
-        if not len(words) or not self.assembled.structure.is_that_of(words):
-            return None
-        own = self._written(there)
-        return own is not None and own.tobytes() == words.tobytes()
-
-    def words(self, x: Array) -> Array | None:
-        """The words at a point; None where the structure may be another one there, or numbers only fit together."""
-        written = [*self.scalars]
-        return self._written(x) if np.array_equal((x == 0.0)[written], self.zeros[written]) else None
-
-    def _written(self, x: Array) -> Array | None:
-        try:
-            assembled = self.assembled.words(x[self.bound])
-        except ModelError:
-            return None
-        if assembled is None:
-            return None
-        words = assembled.copy()
-        for number, places in self.scalars.items():
-            words[places] = x[number]
-        return words if all(table.written(words, x) for table in self.tables) else None
+    def holds(self, words: Array, x: Array) -> bool:
+        """Whether the words at a point are of this structure, and follow alike: at zero a number may be at a kink."""
+        zeros = ((one == 0.0)[list(self.fixed)] for one in (x, self.assembled.start))
+        alike = np.array_equal(*zeros) and self.assembled.structure.is_that_of(words)
+        return alike and all(table.holds(x) for table in self.tables)
 
     def slopes(self, x: Array) -> Slopes:
         """Derivatives of the words at a point; NoGradient where there is none."""
-        return self._fixed or self._slopes(x)
+        return self._same or self._slopes(x)
 
     @cached_property
-    def _fixed(self) -> Slopes | None:
+    def _same(self) -> Slopes | None:
         """Derivatives that are the same everywhere: nothing is assembled, and no knot moves in time."""
-        numbers = {*self.scalars, *(number for table in self.tables for number in table.numbers.tolist())}
         free = self.bound or any(table.moves_times for table in self.tables)
-        return None if free else self._slopes(np.zeros(len(numbers)))
+        return None if free else self._slopes(self.assembled.start)
 
     def _slopes(self, x: Array) -> Slopes:
-        more = self.assembled.slopes(x[self.bound]) if self.bound else None
-        known = np.flatnonzero(more.any(axis=1)) if more is not None else np.zeros(0, dtype=np.int64)
-        places = np.unique(np.concatenate([known, *self.scalars.values(), *(table.places for table in self.tables)]))
+        more = self.assembled.slopes(x)
+        known, own = np.flatnonzero(more.any(axis=1)), (part.words for part in self.fixed.values())
+        places = np.unique(np.concatenate([known, *own, *(table.places for table in self.tables)]))
         matrix = np.zeros((len(places), len(x)))
-        for number, own in self.scalars.items():
-            matrix[np.searchsorted(places, own), number] = 1.0
+        for number, part in self.fixed.items():
+            matrix[np.searchsorted(places, part.words), number] = part.derivative
         for table in self.tables:
             matrix[np.ix_(np.searchsorted(places, table.places), table.numbers)] = table.slopes(x)
-        if more is not None:
-            matrix[np.searchsorted(places, known)[:, None], self.bound] = more[known]
+        matrix[np.searchsorted(places, known)[:, None], list(self.bound)] = more[known]
         return Slopes(places, matrix)
+
+
+def _known(system: System, structure: WordStructure, parameters: Sequence[Tunable], x: Array) -> dict[str, Parameter]:
+    """What numbers reach where all are others: a product of which one factor is zero depends on both."""
+    moves = np.array([_room(one, value) for one, value in zip(parameters, x.tolist(), strict=True)])
+    beside = _beside(system, structure, parameters, x, moves)
+    if beside is None:
+        # numbers that make another structure by themselves stay
+        moves *= [bool(parameter(system, one.field).words.size) for one in parameters]
+        beside = _beside(system, structure, parameters, x, moves)
+    return {one.field: parameter(beside or system, one.field) for one in parameters}
+
+
+def _is_same(one: Parameter, other: Parameter) -> bool:
+    """Whether a number, which may be at a kink in one of two Systems, reaches the same words in both."""
+    return other.derivative is not None and np.array_equal(one.words, other.words)
+
+
+def _beside(
+    system: System, structure: WordStructure, parameters: Sequence[Tunable], x: Array, moves: Array
+) -> System | None:
+    """The System with other numbers; None where it has another structure."""
+    for share in PROBES:
+        with suppress(ModelError):
+            found = made(system, parameters, x + share * moves)
+            return found if structure.is_that_of(words_of(found)) else None
+    return None
+
+
+def _room(one: Tunable, value: float) -> float:
+    """By how much a number may move without another structure: a knot at 0 stays there."""
+    return min(one.scale, one.reach) * (value != 0.0) if np.isfinite(one.reach) else one.scale

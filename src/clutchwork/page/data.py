@@ -22,7 +22,6 @@ from clutchwork.page.slider import Bytes
 from clutchwork.page.sliders import names_of, sliders
 from clutchwork.results.channels import Channels, channels
 from clutchwork.results.forms import Slip
-from clutchwork.sweeps.system_words import SystemLayout
 
 if TYPE_CHECKING:
     from clutchwork.assembly.system import System
@@ -113,8 +112,7 @@ def _options(options: Options) -> dict[str, float]:
 
 def _places(system: System) -> dict[str, int]:
     """Where arrays begin in the bytes."""
-    starts = SystemLayout.of(system).starts
-    return {name: starts[name] for name in ("input_value", "segment_time", "segment_coef")}
+    return {name: system.starts[name] for name in ("input_value", "segment_time", "segment_coef")}
 
 
 def _table(one: Dragged, system: System, room: dict[int, int]) -> dict[str, Any]:

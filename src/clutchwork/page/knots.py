@@ -5,11 +5,13 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import replace
 from itertools import pairwise
+from math import isfinite
 from numbers import Real
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from clutchwork.assembly.provenance import parameter
 from clutchwork.assembly.records import frozen
 from clutchwork.base.classes import dataclass
 from clutchwork.base.errors import UseError, near
@@ -131,36 +133,17 @@ def spread(points: Points, t_end: float) -> Points:
 def with_tables(system: System, wanted: dict[str, Points]) -> tuple[System, list[Dragged]]:
     """The System whose signals are these tables, and where they stand in it."""
     made = system.changed({name: Table(points) for name, points in wanted.items()}) if wanted else system
-    found, problems, owners = list[Dragged](), list[str](), named(made.source) if made.source else {}
+    found, problems = list[Dragged](), list[str]()
     for name, points in wanted.items():
-        beside = made.changed({name: Table(_moved(points))})
-        inputs = _differing(made, beside)
-        if inputs is None:
+        own = parameter(made, name)
+        if not own.is_signal:
             problems.append(f"drag: {name} is more than a signal of its own in this driveline; drag another one")
             continue
-        aim = target(owners, name)
-        spec = field_of(aim)[1] if aim else None
-        bounds = (getattr(spec, "at_least", None), getattr(spec, "at_most", None))
-        found.append(Dragged(name, unit_of(aim) if aim else "", points, *bounds, tuple(inputs)))
+        lower, upper = (bound if isfinite(bound) else None for bound in own.bounds)
+        found.append(Dragged(name, own.unit, points, lower, upper, own.inputs))
     if problems:
         raise UseError("page", problems)
     return made, found
-
-
-def _moved(points: Points) -> Points:
-    size = max(abs(y) for _, y in points) or 1.0
-    return [(x, y + 0.01 * size * (1.0 + i / len(points))) for i, (x, y) in enumerate(points)]
-
-
-def _differing(made: System, beside: System) -> list[int] | None:
-    """Signals that a table is; None where it is something else as well."""
-    own = ("segment_time", "segment_coef", "input_value")
-    for name, array in made.arrays.items():
-        other = beside.arrays[name]
-        if array.shape != other.shape or (name not in own and not np.array_equal(array, other)):
-            return None
-    pairs = zip(made.inputs, beside.inputs, strict=True)
-    return [i for i, (one, other) in enumerate(pairs) if one.signal != other.signal] or None
 
 
 def roomy(system: System, dragged: Sequence[Dragged]) -> tuple[System, dict[int, int]]:

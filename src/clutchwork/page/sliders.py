@@ -23,8 +23,6 @@ if TYPE_CHECKING:
     from clutchwork.assembly.system import System
 
 STOPS, MOST_USUAL = 41, 3
-# of these, to see whether a number is a word by itself
-FEW = 5
 
 
 def sliders(system: System, wanted: Sequence[str] | None, dragged: Sequence[str], bytes_of: Bytes) -> list[Slider]:
@@ -195,19 +193,7 @@ def _number(aim: Target, name: str, text: str) -> float:
 
 
 def _with_words(system: System, made: Slider, bytes_of: Bytes) -> Slider:
-    """Words that any value changes, and what each value makes of them; values that are refused are left out.
-
-    A number that a few values show to be words by itself, and of which none is refused, needs no others.
-    """
-    few = replace(made, values=np.unique(np.append(made.values[:: (STOPS - 1) // FEW], made.values[[0, -1]])))
-    try:
-        found = _at_all(system, few, bytes_of)
-    except ValueError:
-        found = made
-    return found if found.direct and len(found.values) == len(few.values) else _at_all(system, made, bytes_of)
-
-
-def _at_all(system: System, made: Slider, bytes_of: Bytes) -> Slider:
+    """Words that any value changes, and what each value makes of them; values that are refused are left out."""
     lines, kept = list[Words](), list[float]()
     refused = ""
     own = np.frombuffer(bytes_of(system), dtype=np.uint64)

@@ -7,19 +7,21 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
+from clutchwork.assembly.changes import owners_of
+from clutchwork.assembly.during_runs import NOTHING
 from clutchwork.base.errors import Problem
 from clutchwork.base.quote import quote
 from clutchwork.declare.quantity import has_unit
-from clutchwork.declare.schema import Spec, specs
-from clutchwork.model.changes import Target, in_si, named, target
+from clutchwork.model.changes import Target, field_of, in_si, target
 from clutchwork.run.input_schedule import Act, put
 from clutchwork.signals.table import Table
-from clutchwork.stepping.parameters import NEW_RUN, NOTHING, Change, changed
+from clutchwork.stepping.parameters import Change, changed
 from clutchwork.stepping.signals import Settable, given_by_others, signals, unknown
 from clutchwork.stepping.tables import tabled
 
 if TYPE_CHECKING:
     from clutchwork.assembly.system import System
+    from clutchwork.declare.schema import Spec
     from clutchwork.results.state import State
 
 PART_OF_SIGNAL = ("is a part of a signal, which the model gives", "set the signal itself to a number")
@@ -111,16 +113,8 @@ class Outside:
 
     def _value(self, name: str) -> ParameterTarget | None:
         """Where a name leads to in the model."""
-        source = self._present.source
-        aim = target(named(source), name) if source is not None else None
-        if aim is None:
-            return None
-        thing = aim.owner
-        for word in aim.path[:-1]:
-            thing = getattr(thing, word)
-        known = {item.name: spec for item, spec in specs(type(thing))} if hasattr(type(thing), "kind") else {}
-        spec = known.get(aim.path[-1], Spec("param", "", "value"))
-        return ParameterTarget(aim, getattr(thing, aim.path[-1]), spec)
+        aim = target(owners_of(self._present), name)
+        return None if aim is None else ParameterTarget(aim, *field_of(aim))
 
     def _faults(self, name: str, value: Any, found: ParameterTarget) -> Iterator[Problem]:
         """What is wrong with a value beside what a model says of it."""
@@ -139,7 +133,7 @@ class Outside:
         for name, value in values.items():
             known = self._value(name)
             if not change.params and value is not None and known is not None and known.value != value:
-                problems.append(Problem(name, "", NOTHING, remedy=NEW_RUN))
+                problems.append(Problem(name, "", NOTHING.why, remedy=NOTHING.remedy))
             acts.append(Act("param", name, value, () if acts else tuple(change.params.items())))
         return ChangePlan([] if problems else acts, problems, change.new)
 

@@ -1,80 +1,22 @@
-"""Parameters that may change while a run is stepped: what of a System differs then, and why the others stay."""
+"""Parameters that change while a run is stepped."""
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
-from typing import TYPE_CHECKING, Any
+from collections.abc import Mapping
+from typing import TYPE_CHECKING, Any, NamedTuple
 
-import numpy as np
-
+from clutchwork.assembly.during_runs import numbers, stays
 from clutchwork.base.errors import ModelError, Problem
-from clutchwork.base.memoize import memoize
-from clutchwork.declare.node import Component, Work
-from clutchwork.run.begin import new_run
 
 if TYPE_CHECKING:
     from clutchwork.assembly.system import System
 
-NEW_RUN = "give it to the model, and start a new run"
-OTHER = ("changes what the driveline is made of", "build another driveline for it")
-# by the first words of the name of an array: what a change would mean, and what to do instead
-STAYS = {
-    "inertia": ("is an inertia: to change it would make energy of the motion out of nothing", NEW_RUN),
-    "mass": ("is an inertia: to change it would make energy of the motion out of nothing", NEW_RUN),
-    "basis": ("is a rigid ratio: to change it would make speeds jump", "build another driveline for it"),
-    "initial": ("is a value at the start of a run, which is over", NEW_RUN),
-    "shared": ("is part of the heat that a thermal node holds: to change it would make heat out of nothing", NEW_RUN),
-    "heat": ("says where heat goes, which stays so while a run goes on", NEW_RUN),
-    "points": ("is a table, which stays as it is while a run goes on", NEW_RUN),
-    "segment": ("is part of a signal", "set the signal itself to a number"),
-    "input": ("is part of a signal", "set the signal itself to a number"),
-    "contact_law": ("is another friction law, with states of its own", NEW_RUN),
-    "contact": ("says when a contact may lock, which stays so while a run goes on", NEW_RUN),
-}
-STORES = "decides how much energy the element stores: to change it would make some out of nothing"
-VARIANT = "selects a variant, which stays so while a run goes on"
-NOTHING = "acts on nothing while a run goes on"
 
+class Change(NamedTuple):
+    """What setting values of a model does to a run of the core: numbers by their places."""
 
-class Change:
-    """What setting values of a model does to a run of the core."""
-
-    def __init__(self, base: System, present: System, new: System) -> None:
-        """Parameters: base, the System of the run; present, with what was changed so far; new, with all changes."""
-        self.new = new
-        self._base, self._present = base, present
-        before, after = present.arrays["params"], new.arrays["params"]
-        same = before.shape == after.shape
-        self.params = {int(place): float(after[place]) for place in np.flatnonzero(before != after)} if same else {}
-
-    def refusals(self) -> Iterator[tuple[str, str]]:
-        """Why it cannot be done while a run goes on: what is wrong, and the remedy."""
-        old, new = self._present.arrays, self.new.arrays
-        for array in new:
-            if array != "params" and (
-                old[array].shape != new[array].shape or old[array].tobytes() != new[array].tobytes()
-            ):
-                yield next((why for word, why in STAYS.items() if array.startswith(word)), OTHER)
-        if old["params"].shape != new["params"].shape:
-            yield OTHER
-        elif any(map(_stores_otherwise, self._present.elements, self.new.elements)):
-            yield STORES, NEW_RUN
-        elif not all(_scratch(self._base).is_settable(place, value) for place, value in self.params.items()):
-            yield VARIANT, NEW_RUN
-
-
-@memoize
-def _scratch(system: System) -> Any:
-    """A run of the core that is asked which numbers it takes."""
-    return new_run(system.to_bytes())
-
-
-def _stores_otherwise(before: Component, after: Component) -> bool:
-    """Whether an element with other numbers stores another energy in the same state."""
-    if Work.STORE not in before.work or before is after:
-        return False
-    states = [1.0] * len(before.states)
-    return before.stored(states, 1.0) != after.stored(states, 1.0)
+    new: System  # with all changes
+    params: dict[int, float]
 
 
 def changed(
@@ -98,8 +40,10 @@ def _changed(
     """What new values do, what is wrong with them in any model, and why a run that goes on refuses them."""
     wanted = {name: value for name, value in {**settled, **given}.items() if value is not None}
     try:
-        made = Change(base, present, base.changed(wanted) if wanted else base)
+        new = base.changed(wanted) if wanted else base
     except ModelError as error:
         return None, list(error.problems), []
-    why = next(made.refusals(), None)
-    return (made, [], []) if why is None else (None, [], [Problem(", ".join(given), "", why[0], remedy=why[1])])
+    found = stays(base, present, new)
+    if found is not None:
+        return None, [], [Problem(", ".join(given), "", found.why, remedy=found.remedy)]
+    return Change(new, numbers(present, new)), [], []

@@ -2,31 +2,24 @@
 
 from __future__ import annotations
 
-import warnings
-from collections.abc import Iterator
 from typing import TYPE_CHECKING, Any, NamedTuple
 
-from clutchwork.assembly.inputs import SPEED
+from clutchwork.assembly.provenance import parameter
 from clutchwork.assembly.wiring import wiring
 from clutchwork.base.errors import Problem, near
 from clutchwork.base.memoize import memoize
 from clutchwork.base.quote import quote
 from clutchwork.declare.node import Component, is_reference
 from clutchwork.declare.quantity import QuantityError, has_unit, in_si
-from clutchwork.declare.schema import Spec, inputs, specs
+from clutchwork.declare.schema import Spec, specs
 from clutchwork.declare.wording import path_of
 from clutchwork.model.changes import named, of_owner, own_names, owner_of
 from clutchwork.model.fields import number_problems
 from clutchwork.model.numbers import At
 from clutchwork.results.channels import channels
-from clutchwork.signals.table import Table
 
 if TYPE_CHECKING:
     from clutchwork.assembly.system import System
-
-# the temperature of an ambient, which has no declaration of its own
-MARK = 1.2345678e300  # s, a time that no signal has
-TEMPERATURE = Spec("signal", "K", "temperature of an ambient", above=0.0)
 
 
 class Settable(NamedTuple):
@@ -61,11 +54,11 @@ def signals(system: System) -> dict[str, Settable]:
 @memoize
 def settable(system: System) -> dict[str, Settable]:
     """All signals of a System, found once."""
-    known = dict(_declared(system))
     made = {}
     for number, item in enumerate(system.inputs):
-        path, quantity, spec = known.get(item.name, (item.name, "", TEMPERATURE))
-        made[item.name] = Settable((number,), item.unit, spec, path, quantity)
+        owner = item.owner
+        path = path_of(owner) if isinstance(owner, Component) else f'cw.ThermalNode("{owner.name}")'
+        made[item.name] = Settable((number,), item.unit, item.spec, path, item.quantity)
     return made
 
 
@@ -78,43 +71,10 @@ def composed(system: System) -> dict[str, Settable]:
         for item, spec in specs(type(element), "signal", "alternative") if composite else ():
             name, value = f"{element.name}.{item.name}", getattr(element, item.name)
             if name not in settable(system) and value is not None and not is_reference(value):
-                numbers = _parts_with(system, name, spec)
+                numbers = parameter(system, name).inputs
                 if numbers:
                     made[name] = Settable(numbers, system.inputs[numbers[0]].unit, spec, path_of(element), item.name)
     return made
-
-
-def _parts_with(system: System, name: str, spec: Spec) -> tuple[int, ...]:
-    """Numbers of the signals that are that of a composite: a mark put there is found in them."""
-    value = next(number for number in (1.0, 0.5, 300.0, 0.0, -1.0) if spec.allows(number))
-    mark = Table([(0.0, value), (MARK, value)])
-    with warnings.catch_warnings():
-        warnings.simplefilter("ignore")
-        made = system.changed({name: mark})
-    return tuple(number for number, item in enumerate(made.inputs) if item.signal == mark)
-
-
-def _declared(system: System) -> Iterator[tuple[str, tuple[str, str, Spec]]]:
-    """Names of the inputs of all components, with where they are and what they may be."""
-    groups = (system.elements, system.contacts, system.flows, system.processes, system.motions)
-    for component in (one for group in groups for one in group):
-        yield from _of(component, component, "")
-        if component.friction is not None:
-            yield from _of(component.friction, component, "friction.")
-    for motion in system.motions:
-        if not hasattr(motion, "speed"):
-            yield f"{motion.name}.speed", (path_of(motion), "speed", SPEED)
-    for node in system.thermal:
-        yield f"{node.name}.temperature", (f'cw.ThermalNode("{node.name}")', "temperature", TEMPERATURE)
-
-
-def _of(thing: Any, component: Any, inside: str) -> Iterator[tuple[str, tuple[str, str, Spec]]]:
-    """The inputs of a component or of its friction law; each way to give one has bounds of its own."""
-    names = {name for group, _ in inputs(type(thing)) for name in group}
-    for item, spec in specs(type(thing), "signal", "alternative"):
-        if item.name in names:
-            quantity = f"{inside}{item.name}"
-            yield f"{component.name}.{quantity}", (path_of(component), quantity, spec)
 
 
 def given_by_others(system: System, name: str) -> Problem | None:
@@ -162,4 +122,4 @@ def unknown(system: System, name: object) -> Problem:
     such = f"signals are such as {', '.join(map(repr, given[:3]))}" if given else ""
     if is_result:
         return Problem(path, "", message, remedy=such)
-    return Problem(path, "", f"{message}{near(path, [*given, *system.parameters], such)}")
+    return Problem(path, "", f"{message}{near(path, [*given, *system.places], such)}")

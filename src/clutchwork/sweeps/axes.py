@@ -10,15 +10,14 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, field, replace
-from functools import cached_property
 from itertools import islice
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from clutchwork.assembly.changes import UNKNOWN_SOURCE
 from clutchwork.assembly.patches import PLAIN, Unpatched, patches
+from clutchwork.assembly.provenance import is_shared, parameter
 from clutchwork.base.errors import ModelError, Problem
 from clutchwork.declare.layout import FIELDS
 from clutchwork.declare.node import Component, Law, Signal, ThermalNode
@@ -34,7 +33,7 @@ from clutchwork.model.parts import role
 from clutchwork.model.thermal import thermal_problems
 from clutchwork.sweeps.driven import IndependentInput
 from clutchwork.sweeps.mistakes import MOST_PROBLEMS, few
-from clutchwork.sweeps.system_words import Axis, Line, SystemLayout
+from clutchwork.sweeps.system_words import Axis, Line, words_of
 from clutchwork.sweeps.variants import Codes, Variants, Varied
 
 if TYPE_CHECKING:
@@ -118,15 +117,14 @@ class Plan:
             self.bound += group
 
     def _axis(self, one: Varied, aim: Target) -> Axis:
-        spec = _plain_number(aim)
-        if one.name in self.base.parameters and spec is not None:
-            problems = [found for value in one.values for found in _number_problems(value, spec, aim)]
+        if _plain_number(aim) is not None:
+            problems = self.wrong_alone(one)
             if problems:
                 raise ModelError(few(problems), self.base.name)
-            place = self._layout.parameter(one.name)
-            if self._nothing_follows(one, aim, place):
+            known, ends = parameter(self.base, one.name), (min(one.values), max(one.values))
+            if known.is_word and all(map(known.is_word_at, ends)):
                 words = np.array(one.values, dtype=float).view(np.uint64).reshape(-1, 1)
-                return Axis((one.name,), place, words, one.codes)
+                return Axis((one.name,), known.words, np.repeat(words, len(known.words), axis=1), one.codes)
         return self._of_lines([one], aim.owner, [[(aim.path, value)] for value in one.values], one.codes)
 
     def _joint(self, group: Sequence[Varied], aims: Sequence[Target]) -> Axis:
@@ -142,15 +140,8 @@ class Plan:
             found = driven.patches(where, changes, MOST_PROBLEMS)
         else:
             found = [patches(where, owner, new) for new in self._all_renewed(owner, changes)]
-        place, words = self._layout.words(found)
+        place, words = words_of(self.base, found)
         return Axis(tuple(one.name for one in group), place, words, codes)
-
-    def _nothing_follows(self, one: Varied, aim: Target, place: NDArray[np.int64]) -> bool:
-        """Whether a number stands at its own place alone, for the least and the largest of its values."""
-        ends = sorted(one.values)[:: max(1, len(one.values) - 1)]
-        made = self._all_renewed(aim.owner, [[(aim.path, value)] for value in ends])
-        touched, _ = self._layout.words([patches(self.base.numbered, aim.owner, new) for new in made])
-        return bool(np.isin(touched, place).all())
 
     def _all_renewed(self, owner: Any, changes: Sequence[Line]) -> list[Any]:
         """The owner with each set of values at its paths; ModelError names all that are wrong."""
@@ -171,10 +162,6 @@ class Plan:
         if found:
             raise ModelError(found[:MOST_PROBLEMS], self.base.name)
         return made
-
-    @cached_property
-    def _layout(self) -> SystemLayout:
-        return SystemLayout.of(self.base)
 
     def _together(self) -> Iterable[Problem]:
         """Mistakes of values that are right one by one, where an element or its friction law has rules between them."""
@@ -311,8 +298,7 @@ def _slot(aim: Target) -> tuple[str, ...]:
 
 def _entangled(aim: Target) -> bool:
     """Whether a value goes into numbers that others of its owner go into, such as the tolerance of a contact."""
-    known = {item.name: spec for item, spec in specs(type(aim.owner))}
-    return aim.path in (("friction",), ("friction", "band")) or known[aim.path[0]].what == "option"
+    return is_shared(aim) or aim.path == ("friction",)
 
 
 def _holds_points(aim: Target, values: Sequence[Any]) -> bool:

@@ -10,7 +10,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from clutchwork.assembly.patches import Patch, Unpatched
-from clutchwork.declare.layout import COUNTS, FIELDS
 
 if TYPE_CHECKING:
     from clutchwork.assembly.system import System
@@ -32,55 +31,32 @@ class Axis:
     codes: Codes  # which of these each variant has
 
 
-@dataclass(frozen=True, eq=False)
-class SystemLayout:
-    """Where each array of a System begins in its bytes."""
+def words_of(system: System, found: Sequence[Sequence[Patch]]) -> tuple[Places, Words]:
+    """Words of a System that any of many sets of patches changes, and what each set makes of all of them."""
+    shapes, own = dict[tuple[tuple[str, int, int], ...], list[int]](), np.frombuffer(system.to_bytes(), dtype=np.uint64)
+    for number, patches in enumerate(found):
+        shape = tuple((patch.array, patch.start, len(patch.values)) for patch in patches)
+        shapes.setdefault(shape, []).append(number)
+    columns = dict[int, Words]()
+    for shape, numbers in shapes.items():
+        for which, (array, start, _) in enumerate(shape):
+            values = [found[number][which].values for number in numbers]
+            for offset, column in _changed(system.arrays[array], start, values):
+                place = system.starts[array] // 8 + offset
+                if place not in columns:
+                    columns[place] = np.full(len(found), own[place])
+                columns[place][numbers] = column
+    places = sorted(columns)
+    empty = np.zeros((len(found), 0), dtype=np.uint64)
+    return np.array(places, dtype=np.int64), np.column_stack([empty, *(columns[place] for place in places)])
 
-    system: System
-    starts: dict[str, int]
 
-    @classmethod
-    def of(cls, system: System) -> SystemLayout:
-        """The places in `System.to_bytes`."""
-        starts, at = {}, 16 + 8 * len(COUNTS)
-        for name, _, _, _ in FIELDS:
-            starts[name] = at
-            at += -(-system.arrays[name].nbytes // 8) * 8
-        return cls(system, starts)
-
-    def parameter(self, name: str) -> Places:
-        """The word of a parameter that is a plain number."""
-        return np.array([self.starts["params"] // 8 + self.system.parameters[name]], dtype=np.int64)
-
-    def words(self, found: Sequence[Sequence[Patch]]) -> tuple[Places, Words]:
-        """Words that any of many sets of patches changes, and what each set makes of all of them."""
-        shapes = dict[tuple[tuple[str, int, int], ...], list[int]]()
-        for number, patches in enumerate(found):
-            shape = tuple((patch.array, patch.start, len(patch.values)) for patch in patches)
-            shapes.setdefault(shape, []).append(number)
-        columns = dict[int, Words]()
-        for shape, numbers in shapes.items():
-            for which, (array, start, _) in enumerate(shape):
-                values = [found[number][which].values for number in numbers]
-                for offset, column in self._changed(array, start, values):
-                    place = (self.starts[array] // 8) + offset
-                    if place not in columns:
-                        columns[place] = np.full(len(found), self._bytes[place])
-                    columns[place][numbers] = column
-        places = sorted(columns)
-        empty = np.zeros((len(found), 0), dtype=np.uint64)
-        return np.array(places, dtype=np.int64), np.column_stack([empty, *(columns[place] for place in places)])
-
-    def _changed(self, array: str, start: int, values: Sequence[Any]) -> list[tuple[int, Words]]:
-        """Places in an array that some line of values changes in any bit, and the words of all lines there."""
-        old = self.system.arrays[array].reshape(-1)[start : start + len(values[0])]
-        new = np.array(values, dtype=old.dtype)
-        bits = np.dtype(f"u{old.dtype.itemsize}")
-        differ = (new.view(bits) != old.view(bits)).any(axis=0)
-        if differ.any() and old.dtype.itemsize != 8:
-            raise Unpatched
-        return [(start + int(place), new[:, place].view(np.uint64)) for place in np.flatnonzero(differ)]
-
-    @property
-    def _bytes(self) -> Words:
-        return np.frombuffer(self.system.to_bytes(), dtype=np.uint64)
+def _changed(array: NDArray[Any], start: int, values: Sequence[Any]) -> list[tuple[int, Words]]:
+    """Places in an array that some line of values changes in any bit, and the words of all lines there."""
+    old = array.reshape(-1)[start : start + len(values[0])]
+    new = np.array(values, dtype=old.dtype)
+    bits = np.dtype(f"u{old.dtype.itemsize}")
+    differ = (new.view(bits) != old.view(bits)).any(axis=0)
+    if differ.any() and old.dtype.itemsize != 8:
+        raise Unpatched
+    return [(start + int(place), new[:, place].view(np.uint64)) for place in np.flatnonzero(differ)]

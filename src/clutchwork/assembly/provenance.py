@@ -1,0 +1,246 @@
+"""Which words of a System each number, curve and signal of its driveline reaches, and what follows from that.
+
+Own numbers of elements and inertias are written into the arrays without assembling them, so it costs little to look at
+what one alone changes. Nothing else looks for it: changes, sweeps, gradients, steps and pages ask this table.
+decisions/0043
+"""
+
+from __future__ import annotations
+
+import warnings
+from collections.abc import Iterator, Mapping
+from functools import cached_property, partial
+from itertools import islice
+from math import inf, nextafter
+from numbers import Real
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from clutchwork.assembly.changes import UNKNOWN_SOURCE, owners_of
+from clutchwork.assembly.during_runs import NOTHING, OTHER, SIGNAL, Stays, stays
+from clutchwork.assembly.inputs import plain_signal
+from clutchwork.assembly.masses import is_mass, masses
+from clutchwork.base.classes import dataclass
+from clutchwork.base.errors import ModelError, ModelWarning, near
+from clutchwork.base.memoize import memoize
+from clutchwork.declare.node import Signal
+from clutchwork.model.changes import SIGNALS, Target, all_names, field_of, renewed, target, unit_of
+from clutchwork.signals.table import Table
+
+if TYPE_CHECKING:
+    from clutchwork.assembly.system import System
+    from clutchwork.declare.schema import Spec
+
+Places = NDArray[np.int64]
+Reach = Mapping[str, Places]
+
+# by so much of their scale numbers are moved; those at a bound go to one side alone
+PROBES = (1e-3, -1.7e-3, 2.3e-3, -2.9e-3)
+# values of signals, of which some fit any
+LEVELS = (1.0, 0.5, 300.0, 0.0, -1.0)
+# arrays that hold signals alone
+OF_SIGNALS = {"input_first", "input_count", "input_period", "input_value", "segment_time", "segment_coef"}
+
+
+@dataclass(frozen=True, eq=False)
+class Parameter:
+    """Something of a driveline that may be changed, by its name in `System.changed`."""
+
+    name: str
+    value: Any
+    unit: str
+    bounds: tuple[float, float]  # what its declaration allows
+    # places that another value changes in each array, in flat order; nothing: it acts on nothing here
+    reach: Reach
+    is_word: bool  # each of these is the number itself
+    inputs: tuple[int, ...]  # numbers of the signals that it is, or is inside of
+    _spec: Spec
+    _system: System
+    _beside: System | None
+
+    @property
+    def is_signal(self) -> bool:
+        """Whether it reaches signals and nothing else."""
+        return bool(self.inputs) and self.reach.keys() <= OF_SIGNALS
+
+    @property
+    def is_sum(self) -> bool:
+        """Whether its words are sums over it and others like it, as the mass matrix is over inertias."""
+        return self.derivative is not None and not self.is_word
+
+    @cached_property
+    def words(self) -> Places:
+        """Words of eight bytes in the bytes of the System that it changes, in order."""
+        known = {name: places for name, places in self.reach.items() if _is_real(self._system, name)}
+        found = [self._system.starts[name] // 8 + places for name, places in known.items()]
+        return np.sort(np.concatenate([np.zeros(0, dtype=np.int64), *found]))
+
+    @cached_property
+    def derivative(self) -> NDArray[np.float64] | None:
+        """Derivatives of its words, the same for all values; None: they depend on the value, or nobody knows them."""
+        if self.is_word:
+            return np.ones(len(self.words))
+        known = masses(self._system) if is_mass(self.name) else None
+        if known is None or self.name not in known.places:
+            return None
+        starts, made = self._system.starts, known.derivatives(self.name)
+        found = {starts[array] // 8 + place: slope for (array, place), slope in made.items()}
+        return np.array([found[word] for word in self.words.tolist()])
+
+    @cached_property
+    def stays(self) -> Stays | None:
+        """Why it cannot change while a run goes on, and what to do instead; None: it can."""
+        if self.is_signal:
+            return None if self._spec.what in SIGNALS else SIGNAL
+        if self._beside is None:
+            return OTHER
+        return stays(self._system, self._system, self._beside) or (None if self.reach else NOTHING)
+
+    @property
+    def when(self) -> str:
+        """When it may change: "during a run" or "before a run"."""
+        return "during a run" if self.stays is None else "before a run"
+
+    def is_word_at(self, value: float) -> bool:
+        """Whether with another value its words are that, and nothing else changes."""
+        made = _changed(self._system, self.name, value)
+        return made is not None and _is_value(made, differing(self._system, made), self.reach, value)
+
+
+class Parameters(Mapping[str, Parameter]):
+    """Everything of a System that may be changed, by name; each is looked at when it is first asked for."""
+
+    def __init__(self, system: System) -> None:
+        if system.source is None:
+            raise ModelError([UNKNOWN_SOURCE])
+        self._system, self._source = system, system.source
+
+    def __getitem__(self, name: str) -> Parameter:
+        if target(owners_of(self._system), name) is None:
+            raise KeyError(f"{name!r} is nothing that may be changed{near(name, self)}")
+        return parameter(self._system, name)
+
+    def __iter__(self) -> Iterator[str]:
+        return all_names(self._source)
+
+    def __len__(self) -> int:
+        return sum(1 for _ in self)
+
+    def __repr__(self) -> str:
+        return f"<Parameters: {', '.join(self)}>"
+
+
+@memoize
+def parameter(system: System, name: str) -> Parameter:
+    """One of them; its name must be known."""
+    aim: Any = target(owners_of(system), name)
+    value, spec = field_of(aim)
+    moved = ((there, made) for there in _others(value, spec) if (made := _changed(system, name, there)) is not None)
+    found = [(there, made, differing(system, made)) for there, made in islice(moved, 2)]
+    reach = next((reach for _, _, reach in found), None) or {}
+    is_number = isinstance(value, Real) and not is_shared(aim) and len(found) == 2 and bool(reach)
+    is_word = is_number and all(_is_value(made, there, reach, value) for value, made, there in found)
+    inputs = next((inputs for there, made, _ in found if (inputs := _inputs(system, made, aim, there))), ())
+    beside = next((made for _, made, _ in found), None)
+    return Parameter(name, value, unit_of(aim), bounds_of(spec), reach, is_word, inputs, spec, system, beside)
+
+
+def is_shared(aim: Target) -> bool:
+    """Whether the assembly makes something of a number together with others, such as the larger of two."""
+    return field_of(aim)[1].what == "option" or aim.path[-1] == "band"
+
+
+def bounds_of(*found: Spec) -> tuple[float, float]:
+    """The least and the largest number that all declarations allow."""
+    lower = [nextafter(spec.above, inf) for spec in found if spec.above is not None]
+    upper = [nextafter(spec.below, -inf) for spec in found if spec.below is not None]
+    lower += [spec.at_least for spec in found if spec.at_least is not None]
+    upper += [spec.at_most for spec in found if spec.at_most is not None]
+    return max(lower, default=-inf), min(upper, default=inf)
+
+
+def differing(one: System, other: System) -> Reach | None:
+    """Places in which the arrays of two Systems differ in any bit; None where they are of different sizes."""
+    found = dict[str, Places]()
+    for name, array in one.arrays.items():
+        new = other.arrays[name]
+        if new.shape != array.shape:
+            return None
+        bits = np.dtype(f"u{array.dtype.itemsize}")
+        if new is not array and np.any(unlike := array.reshape(-1).view(bits) != new.reshape(-1).view(bits)):
+            found[name] = np.flatnonzero(unlike)
+    return found
+
+
+def _changed(system: System, name: str, value: Any) -> System | None:
+    """The System with another value; None where that is refused."""
+    with warnings.catch_warnings():
+        # what is rarely wanted was said of the driveline
+        warnings.simplefilter("ignore", ModelWarning)
+        try:
+            return system.changed({name: value})
+        except ModelError:
+            return None
+
+
+def _others(value: Any, spec: Spec) -> Iterator[Any]:
+    """Values beside one."""
+    if isinstance(value, bool) or spec.choices:
+        yield from (other for other in (spec.choices or (True, False)) if other != value)
+    elif isinstance(value, Real):
+        now, scale = float(value), abs(float(value)) or 1.0
+        whole = isinstance(value, int) and (spec.whole or spec.fixed)
+        found = (value + 1, value - 1) if whole else tuple(now + share * scale for share in PROBES)
+        yield from (there for there in found if spec.allows(there))
+    elif isinstance(value, Signal) and type(value).segments is Table.segments:
+        yield from map(Table, _tables(vars(value)["points"]))
+    elif isinstance(value, Signal) and spec.what in SIGNALS:
+        yield from (Table([(0.0, level), (1.0, level)]) for level in LEVELS if spec.allows(level))
+    elif hasattr(value, "__len__") and not isinstance(value, str):
+        yield from _tables(value)
+
+
+def _tables(values: Any) -> Iterator[Any]:
+    """Tables with other numbers, each by another share: ordinates of pairs, or all numbers of a list or of rows."""
+    pairs = all(hasattr(row, "__len__") and len(row) == 2 for row in values)
+    size = max((abs(float(row[1])) for row in values), default=0.0) or 1.0 if pairs else 0.0
+    for share in PROBES if len(values) else ():
+        moves = [share * (1 + i / len(values)) for i in range(len(values))]
+        both = zip(values, moves, strict=True)
+        yield [[row[0], row[1] + move * size] if pairs else _scaled(row, 1.0 + move) for row, move in both]
+
+
+def _scaled(row: Any, factor: float) -> Any:
+    return [one * factor for one in row] if hasattr(row, "__len__") else row * factor
+
+
+def _is_value(made: System, differs: Reach | None, reach: Reach, value: float) -> bool:
+    """Whether a value itself is at all places, and nothing differs elsewhere."""
+    if differs is None or not differs.keys() <= reach.keys():
+        return False
+    inside = all(np.isin(places, reach[name]).all() for name, places in differs.items())
+    words = (made.arrays[name].reshape(-1)[places] for name, places in reach.items() if _is_real(made, name))
+    return inside and all(map(partial(_is_real, made), reach)) and all(np.all(own == value) for own in words)
+
+
+def _is_real(system: System, array: str) -> bool:
+    return bool(system.arrays[array].dtype.kind == "f")
+
+
+def _inputs(system: System, made: System, aim: Target, value: Any) -> tuple[int, ...]:
+    """Numbers of the signals that something is, or is inside of."""
+    signal = _signal_with(aim, value)
+    both = enumerate(zip(system.inputs, made.inputs, strict=True)) if signal is not None else ()
+    return tuple(number for number, (old, new) in both if new.signal == signal != old.signal)
+
+
+def _signal_with(aim: Target, value: Any) -> Signal | None:
+    """The signal that a value makes; None where it is in none."""
+    for cut in range(1, len(aim.path) + 1):
+        outer, spec = field_of(Target(aim.owner, aim.path[:cut]))
+        if spec.what in SIGNALS:
+            rest = aim.path[cut:]
+            return renewed(outer, [(rest, value)]) if rest else plain_signal(value)
+    return None
