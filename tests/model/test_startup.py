@@ -13,11 +13,12 @@ IMPORT = {
     *("declare", "declare.calls", "declare.core", "declare.docs", "declare.to_si", "declare.hooks", "declare.layout"),
     *("declare.node", "declare.pints", "declare.quantity", "declare.registry", "declare.schema"),
     *("declare.wording", "declare.unit_table", "declare.unit_words", "declare.units", "declare.expected_value"),
-    *("face", "face.names", "_core"),
+    *("base.verbs", "face", "face.names", "face.verbs", "_core"),
 }
 SIMULATE = {
-    *("base.memoize", "results", "results.events", "results.exports", "results.trajectory"),
-    *("run", "run.begin", "run.control", "run.jumps", "run.record", "run.settings", "run.simulation"),
+    *("base.memoize", "results", "results.events", "results.recorded"),
+    *("run", "run.begin", "run.control", "run.exports", "run.jumps", "run.record", "run.settings", "run.simulation"),
+    "run.trajectory",
 }
 # rooms with a command of their own
 ROOMS = ("codegen", "diagrams", "fit", "linear", "page", "rig", "schematic", "sweeps")

@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from clutchwork.assembly.records import frozen
 from clutchwork.base.errors import ModelWarning
 from clutchwork.declare.options import Options
-from clutchwork.face.driveline import Driveline
+from clutchwork.driveline.driveline import Driveline
 from clutchwork.fit.sliding import at_rest
 from clutchwork.model.pools import Pools
 from clutchwork.run.failure import StoppedEarly

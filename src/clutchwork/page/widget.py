@@ -11,7 +11,7 @@ from clutchwork.page.static import CORE, FOLDER, STYLE, WIDGET, built
 from clutchwork.page.traits import knots_of, values_of
 
 if TYPE_CHECKING:
-    from clutchwork.results.trajectory import Trajectory
+    from clutchwork.run.trajectory import Trajectory
 
 
 def widget_of(run: Trajectory, drag: Any, sliders: Any, show: Any) -> Any:

@@ -25,7 +25,7 @@ from clutchwork.sweeps.single import single
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
-    from clutchwork.results.trajectory import Trajectory
+    from clutchwork.run.trajectory import Trajectory
 
 STATUS = "status"
 

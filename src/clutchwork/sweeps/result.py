@@ -30,7 +30,7 @@ if TYPE_CHECKING:
 
     from clutchwork.assembly.system import System
     from clutchwork.declare.options import Options
-    from clutchwork.results.trajectory import Trajectory
+    from clutchwork.run.trajectory import Trajectory
     from clutchwork.sweeps.batch import Block
     from clutchwork.sweeps.variants import Variants, Varied
 
