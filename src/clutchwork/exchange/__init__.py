@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from importlib import import_module
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -11,9 +10,9 @@ from clutchwork.base.errors import ClutchworkError, near
 from clutchwork.base.paths import fitting
 from clutchwork.base.quote import quote
 from clutchwork.base.writing import replaced
+from clutchwork.exchange import content, csv_table, mat, mdf, netcdf, parquet
 
 if TYPE_CHECKING:
-    from clutchwork.exchange.content import Content
     from clutchwork.results.recorded import Recorded
 
 # name of the format by ending of the file
@@ -25,7 +24,13 @@ ENDINGS = {
     ".nc": "netcdf",
 }
 
-_MODULES = {"csv": "csv_table", "parquet": "parquet", "mdf": "mdf", "mat": "mat", "netcdf": "netcdf"}
+_WRITERS: dict[str, Callable[[content.Content, Path], None]] = {
+    "csv": csv_table.write,
+    "parquet": parquet.write,
+    "mdf": mdf.write,
+    "mat": mat.write,
+    "netcdf": netcdf.write,
+}
 
 
 class EndingError(ClutchworkError, ValueError):
@@ -48,16 +53,12 @@ def write(
     computed, not interpolated, all of the run by default; units, other ones than those of SI by signal; form,
     a format in place of that of the ending.
     """
-    # every run imports this package, few are written
-    from clutchwork.exchange.content import content
-
     example = next(ending for ending, one in ENDINGS.items() if not form or one == form)
     path = fitting(f"run.to_{form}" if form else "run.write", path, f"run{example}")
     found = _format(path, form)
-    make = _writer(found)
-    chosen = content(run, names, dt, times, units)
+    chosen = content.content(run, names, dt, times, units)
     with replaced(path) as new:
-        make(chosen, new)
+        _WRITERS[found](chosen, new)
 
 
 def _format(path: Path, form: str) -> str:
@@ -74,8 +75,3 @@ def _format(path: Path, form: str) -> str:
             f"{quote(str(path))} ends in {quote(path.suffix)}{near(path.suffix, ENDINGS, f'formats are {known}')}"
         )
     return found
-
-
-def _writer(form: str) -> Callable[[Content, Path], None]:
-    made: Callable[[Content, Path], None] = import_module(f"clutchwork.exchange.{_MODULES[form]}").write
-    return made
