@@ -16,8 +16,8 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
-    from clutchwork.linear.described import LinearSystem
     from clutchwork.linear.modes import NaturalMode
+    from clutchwork.linear.system import LinearSystem
 
 STABLE, GROWING = COLOURS[0], COLOURS[1]
 PANEL = 24.0  # mm
