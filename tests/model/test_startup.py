@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import ast
 import json
+import re
 import subprocess
 import sys
 
@@ -29,6 +31,15 @@ HELP = IMPORT | {
     *("declare.options", "declare.purposes", "declare.setting", "diagrams.kinds", "run", "run.flags", "sweeps.asking"),
     *ROOMS,
     *(f"{room}.command" for room in ROOMS),
+}
+# what may import a module of the package by a name that is text
+BY_NAME = {
+    # public names, imported when they are first used
+    *("__init__.py", "fit/__init__.py", "rig/__init__.py"),
+    # every file of a folder
+    *("declare/registry.py", "hints/registry.py", "rig/experiments/__init__.py"),
+    # compiled ones, which may be missing
+    "declare/core.py",
 }
 # slow to load, and of no use before something is run, read or written
 COSTLY = {
@@ -72,3 +83,50 @@ def test_help() -> None:
     loaded = _loaded("pass\nfrom clutchwork.command.main import main\nmain([])")
     assert _own(loaded) == HELP
     assert loaded & COSTLY == set()
+
+
+def test_an_import_inside_a_function_has_a_reason() -> None:
+    """A start loads its module, it brings what may not be installed, or a comment above says why."""
+    first = "d = cw.Driveline.load('examples/six_speed/model.toml'); d.simulate(0.1)"
+    start = _own(_loaded(f"pass\nimport clutchwork as cw\n{first}")) | HELP
+    package = ROOT / "src" / "clutchwork"
+    wrong = list[str]()
+    for path in sorted(package.rglob("*.py")):
+        own = path.relative_to(package).with_suffix("")
+        if ".".join(own.parts).removesuffix(".__init__") not in start:
+            wrong += [f"{own}:{line}" for line in _inner_imports(path.read_text(encoding="utf-8"))]
+    assert wrong == []
+
+
+def test_no_module_is_named_by_a_text() -> None:
+    """An arrow between rooms is an import, which the contracts see."""
+    package = ROOT / "src" / "clutchwork"
+    found = {
+        path.relative_to(package).as_posix()
+        for path in package.rglob("*.py")
+        for node in ast.walk(ast.parse(path.read_text(encoding="utf-8")))
+        if isinstance(node, ast.Call) and ast.unparse(node.func).endswith(("import_module", "__import__"))
+        # names of other packages begin with these
+        if not re.match(r"f?'(?!clutchwork|{)", ast.unparse(node.args[0]))
+    }
+    assert found - {"base/extras.py"} == BY_NAME
+
+
+def _inner_imports(text: str) -> list[int]:
+    """Lines of imports inside functions, the first of those below each other, with no comment above."""
+    lines = text.splitlines()
+    tree = ast.parse(text)
+    inner = {
+        node.lineno - 1
+        for function in ast.walk(tree)
+        if isinstance(function, ast.FunctionDef)
+        for node in ast.walk(function)
+        if isinstance(node, ast.Import | ast.ImportFrom) and not _is_optional(node)
+    }
+    firsts = sorted(place for place in inner if place - 1 not in inner)
+    return [place + 1 for place in firsts if not lines[place - 1].lstrip().startswith("#")]
+
+
+def _is_optional(node: ast.Import | ast.ImportFrom) -> bool:
+    names = [node.module or ""] if isinstance(node, ast.ImportFrom) else [one.name for one in node.names]
+    return {name.partition(".")[0] for name in names} <= COSTLY

@@ -8,6 +8,8 @@ from typing import TYPE_CHECKING, Any
 from clutchwork.base.errors import UseError
 from clutchwork.base.quote import quote
 from clutchwork.declare.calls import explained
+from clutchwork.driveline.driveline import Driveline
+from clutchwork.schematic.draw import drawn
 
 if TYPE_CHECKING:
     from clutchwork.declare.node import Number
@@ -35,9 +37,6 @@ def draw(
     are shown; values, whether inertias, ratios and the like are shown; power, whether the power [W] of elements is;
     width [mm], from which on a long driveline is folded into rows. UseError for what does not fit.
     """
-    from clutchwork.driveline.driveline import Driveline
-    from clutchwork.schematic.draw import drawn
-
     if isinstance(thing, Driveline):
         return thing.draw(path, run=run, at=at, values=values, power=power, width=width)
     if hasattr(thing, "events") and hasattr(thing, "system"):

@@ -10,10 +10,10 @@ from typing import TYPE_CHECKING, NamedTuple, TypeAlias
 
 from clutchwork.base.memoize import memoize
 from clutchwork.hints.hint import Hint, Hints
+from clutchwork.hints.look import Look
 
 if TYPE_CHECKING:
     from clutchwork.assembly.system import System
-    from clutchwork.hints.look import Look
     from clutchwork.results.recorded import Recorded
 
 OfModel: TypeAlias = "Callable[[System], Iterable[Hint]]"
@@ -73,8 +73,6 @@ def of_model(system: System) -> Hints:
 
 def of_run(run: Recorded) -> Hints:
     """The hints about a run, after those about its model."""
-    from clutchwork.hints.look import Look
-
     if not len(run):
         return of_model(run.system)
     look = Look.at(run)

@@ -21,6 +21,7 @@ def figure_of(height: float, *, formulas: bool = True, width: float = WIDTH) -> 
     Parameters: height [mm]; formulas, whether text between dollars is one, as on logarithmic axes; width [inch].
     """
     matplotlib = need("matplotlib", "draw", "a picture")
+    # needs matplotlib
     from clutchwork.plot.canvas import Picture
 
     with matplotlib.rc_context(settings(formulas)):

@@ -11,6 +11,7 @@ from clutchwork.base import html
 from clutchwork.base.errors import ClutchworkError
 from clutchwork.declare.docs import described
 from clutchwork.declare.schema import specs
+from clutchwork.plot.curves import thinned
 from clutchwork.plot.figure import figure_of
 from clutchwork.plot.style import COLOURS, MILLIMETRE
 from clutchwork.signals.bases.waveform import piece_value
@@ -79,8 +80,6 @@ def curve(signal: Signal) -> tuple[Array, Array] | None:
 
 
 def _table(points: Array) -> tuple[Array, Array]:
-    from clutchwork.plot.curves import thinned
-
     time, values = points.T
     beyond = 0.1 * (time[-1] - max(0.0, time[0])) or 1.0
     time = np.concatenate([[min(0.0, time[0])], time, [time[-1] + beyond]])

@@ -7,9 +7,12 @@ from collections.abc import Callable, Iterator, Mapping
 from functools import cache
 from typing import TYPE_CHECKING, Any, TypeVar
 
+from clutchwork.base import html
 from clutchwork.base.classes import dataclass
+from clutchwork.base.errors import UnknownName, near
 from clutchwork.base.extras import need
 from clutchwork.base.plural import columns
+from clutchwork.base.quote import quote
 from clutchwork.declare.calls import explained_methods
 from clutchwork.declare.node import Component, Domain, Work
 from clutchwork.results.flows import Flows
@@ -86,9 +89,6 @@ class LossTable:
 
     def __getitem__(self, element: str) -> Loss:
         """The line of an element or shaft; UnknownName, a KeyError, with near ones."""
-        from clutchwork.base.errors import UnknownName, near
-        from clutchwork.base.quote import quote
-
         known = {line.element: line for line in self.lines}
         if element not in known:
             raise UnknownName(f"no element or shaft {quote(element)}{near(element, known)}")
@@ -132,8 +132,6 @@ class LossTable:
 
     def _repr_html_(self) -> str:
         """A table for a notebook."""
-        from clutchwork.base import html
-
         return html.table(self._head(), self._cells(), right={2, 3, 4, 5, 6}, most=10 * html.MOST_ROWS)
 
     def _head(self) -> tuple[str, ...]:
