@@ -7,6 +7,7 @@ import json
 import re
 import subprocess
 import sys
+from collections.abc import Iterator
 
 from support.project import ROOT
 
@@ -89,27 +90,33 @@ def test_an_import_inside_a_function_has_a_reason() -> None:
     """A start loads its module, it brings what may not be installed, or a comment above says why."""
     first = "d = cw.Driveline.load('examples/six_speed/model.toml'); d.simulate(0.1)"
     start = _own(_loaded(f"pass\nimport clutchwork as cw\n{first}")) | HELP
-    package = ROOT / "src" / "clutchwork"
     wrong = list[str]()
-    for path in sorted(package.rglob("*.py")):
-        own = path.relative_to(package).with_suffix("")
-        if ".".join(own.parts).removesuffix(".__init__") not in start:
-            wrong += [f"{own}:{line}" for line in _inner_imports(path.read_text(encoding="utf-8"))]
+    for own, text in _sources(r"(?m)^ +(from|import) "):
+        if own.removesuffix(".py").replace("/", ".").removesuffix(".__init__") not in start:
+            wrong += [f"{own}:{line}" for line in _inner_imports(text)]
     assert wrong == []
 
 
 def test_no_module_is_named_by_a_text() -> None:
     """An arrow between rooms is an import, which the contracts see."""
-    package = ROOT / "src" / "clutchwork"
     found = {
-        path.relative_to(package).as_posix()
-        for path in package.rglob("*.py")
-        for node in ast.walk(ast.parse(path.read_text(encoding="utf-8")))
+        own
+        for own, text in _sources("import_module|__import__")
+        for node in ast.walk(ast.parse(text))
         if isinstance(node, ast.Call) and ast.unparse(node.func).endswith(("import_module", "__import__"))
         # names of other packages begin with these
         if not re.match(r"f?'(?!clutchwork|{)", ast.unparse(node.args[0]))
     }
     assert found - {"base/extras.py"} == BY_NAME
+
+
+def _sources(pattern: str) -> Iterator[tuple[str, str]]:
+    """Files of the package that have something, by their paths in it."""
+    package = ROOT / "src" / "clutchwork"
+    for path in sorted(package.rglob("*.py")):
+        text = path.read_text(encoding="utf-8")
+        if re.search(pattern, text):
+            yield path.relative_to(package).as_posix(), text
 
 
 def _inner_imports(text: str) -> list[int]:

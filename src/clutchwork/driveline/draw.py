@@ -9,11 +9,11 @@ from clutchwork.base.errors import UseError
 from clutchwork.base.quote import quote
 from clutchwork.declare.calls import explained
 from clutchwork.driveline.driveline import Driveline
+from clutchwork.results.recorded import Recorded
 from clutchwork.schematic.draw import drawn
 
 if TYPE_CHECKING:
     from clutchwork.declare.node import Number
-    from clutchwork.results.recorded import Recorded
     from clutchwork.schematic.picture import Schematic
 
 
@@ -39,7 +39,7 @@ def draw(
     """
     if isinstance(thing, Driveline):
         return thing.draw(path, run=run, at=at, values=values, power=power, width=width)
-    if hasattr(thing, "events") and hasattr(thing, "system"):
+    if isinstance(thing, Recorded):
         run, thing = thing, thing.system
     source = getattr(thing, "source", None)
     if source is None:

@@ -3,22 +3,20 @@
 from __future__ import annotations
 
 import warnings
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from numbers import Real
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from clutchwork.base import html
-from clutchwork.base.errors import ClutchworkError
 from clutchwork.declare.core import core, number
-from clutchwork.declare.docs import described
 from clutchwork.declare.schema import specs
 from clutchwork.driveline.driveline import Driveline
 from clutchwork.elements.bearing_friction import BearingFriction
 from clutchwork.elements.prescribed_speed import PrescribedSpeed
 from clutchwork.model.pools import Pools
+from clutchwork.plot import declared
 from clutchwork.plot.figure import figure_of
 from clutchwork.plot.panels import legend
 from clutchwork.plot.style import COLOURS, MILLIMETRE, looks
@@ -41,32 +39,8 @@ SIZE = (130.0, 55.0)  # mm
 
 
 def parts(law: Law) -> tuple[Picture | None, list[str]]:
-    """The curve and the parameters; no curve without matplotlib, or of a law whose parameters are wrong."""
-    name = type(law).__name__
-    tables = [html.heading(name), html.table(("parameter", "value", "unit", "meaning"), _parameters(law))]
-    try:
-        wrong = [html.paragraph(" ".join(problem)) for problem in law.problems()]
-        return (None if wrong else _picture(law, curves(law))), [*tables, *wrong]
-    except (ImportError, ClutchworkError, ArithmeticError, ValueError, TypeError, LookupError):
-        # what a law cannot be asked for is not drawn; a model that has it says why
-        return None, tables
-
-
-def _parameters(law: Law) -> list[tuple[str, str, str, str]]:
-    lines = []
-    for item, spec in specs(type(law)):
-        told = described(item, spec)
-        lines.append((item.name, _value(getattr(law, item.name)), told.unit, told.meaning))
-    return lines
-
-
-def _value(value: Any) -> str:
-    """A number, or how many points a table has."""
-    if isinstance(value, Real) and not isinstance(value, bool):
-        return f"{float(value):.6g}"
-    if isinstance(value, Sequence) and not isinstance(value, str) and len(value) > 4:
-        return f"{len(value)} values"
-    return "none" if value is None else str(value)
+    """The curve and the parameters."""
+    return declared.parts(law, lambda: _picture(law, curves(law)))
 
 
 def curves(law: Law) -> dict[str, tuple[Array, Array, float | None]]:

@@ -14,11 +14,11 @@ from clutchwork.plot.chosen import PICTURES, PanelRequest, asked, panels, usual
 from clutchwork.plot.curves import panels_of, units_of
 from clutchwork.plot.measured import samples, with_samples
 from clutchwork.plot.view import viewed
+from clutchwork.results.recorded import Recorded
 
 if TYPE_CHECKING:
     from clutchwork.declare.node import Number
     from clutchwork.plot.canvas import Picture
-    from clutchwork.results.recorded import Recorded
 
 COLOURS = ("run", "signal")
 
@@ -67,20 +67,24 @@ def _runs(given: Sequence[Any], labels: Any) -> tuple[dict[str, Recorded], list[
             raise UseError("compare", ["labels are given twice: the keys of the mapping are labels; leave out labels="])
         runs, rest = {str(label): run for label, run in given[0].items()}, list(given[1:])
     else:
-        count = next((i for i, one in enumerate(given) if not _is_run(one)), len(given))
+        count = next((i for i, one in enumerate(given) if not isinstance(one, Recorded)), len(given))
         listed, rest = list(given[:count]), list(given[count:])
         runs = dict(zip(_labels(listed, labels), listed, strict=True))
-    wrong = [f"{quote(label)} is {quote(run)}, which is not a run" for label, run in runs.items() if not _is_run(run)]
-    wrong += [f"{quote(one)} is not among the runs; give all runs before the signals" for one in rest if _is_run(one)]
+    wrong = [
+        f"{quote(label)} is {quote(run)}, which is not a run"
+        for label, run in runs.items()
+        if not isinstance(run, Recorded)
+    ]
+    wrong += [
+        f"{quote(one)} is not among the runs; give all runs before the signals"
+        for one in rest
+        if isinstance(one, Recorded)
+    ]
     if not runs:
         wrong.append("there is no run; give what simulate returns, such as {'soft': run1, 'hard': run2}")
     if wrong:
         raise UseError("compare", wrong)
     return runs, rest
-
-
-def _is_run(thing: object) -> bool:
-    return all(hasattr(type(thing), name) for name in ("channels", "at", "wiring"))
 
 
 def _labels(runs: Sequence[Any], labels: Any) -> list[str]:

@@ -7,10 +7,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
-from clutchwork.base import html
-from clutchwork.base.errors import ClutchworkError
-from clutchwork.declare.docs import described
-from clutchwork.declare.schema import specs
+from clutchwork.plot import declared
 from clutchwork.plot.curves import thinned
 from clutchwork.plot.figure import figure_of
 from clutchwork.plot.style import COLOURS, MILLIMETRE
@@ -29,33 +26,8 @@ MOST_POINTS = 20_000
 
 
 def parts(signal: Signal) -> tuple[Picture | None, list[str]]:
-    """The curve and the parameters; no curve without matplotlib, or of a signal that a function sets."""
-    tables = [
-        html.heading(type(signal).__name__),
-        html.table(("parameter", "value", "unit", "meaning"), _lines(signal)),
-    ]
-    try:
-        if signal.problems():
-            return None, [*tables, *(html.paragraph(" ".join(problem)) for problem in signal.problems())]
-        found = curve(signal)
-        return (None if found is None else _picture(signal, *found)), tables
-    except (ImportError, ClutchworkError, ArithmeticError, ValueError, TypeError, LookupError):
-        return None, tables
-
-
-def _lines(signal: Signal) -> list[tuple[str, str, str, str]]:
-    lines = []
-    for item, spec in specs(type(signal)):
-        told, value = described(item, spec), getattr(signal, item.name)
-        shown = f"{len(value)} points" if spec.what == "curve" and len(value) > 4 else _shown(value)
-        lines.append((item.name, shown, told.unit, told.meaning))
-    return lines
-
-
-def _shown(value: Any) -> str:
-    if isinstance(value, float):
-        return f"{value:.6g}"
-    return getattr(value, "__qualname__", "") or str(value)
+    """The curve and the parameters; no curve of a signal that a function sets."""
+    return declared.parts(signal, lambda: None if (found := curve(signal)) is None else _picture(signal, *found))
 
 
 def curve(signal: Signal) -> tuple[Array, Array] | None:
