@@ -20,8 +20,8 @@ import clutchwork
 from clutchwork.declare.core import core as load_core
 from clutchwork.declare.node import Domain
 from clutchwork.declare.purposes import ELEMENT_ROLES, groups
-from clutchwork.results.plot.panels import scale
-from clutchwork.results.plot.style import COLOURS, EVENT_LINE, MILLIMETRE, RC
+from clutchwork.plot.panels import scale
+from clutchwork.plot.style import COLOURS, EVENT_LINE, MILLIMETRE, RC
 from element_programs import performed, program
 
 if TYPE_CHECKING:

@@ -11,7 +11,7 @@ mpl.use("agg")
 from groups import programs
 
 import clutchwork as cw
-from clutchwork.face.laws import parts as law_parts
+from clutchwork.driveline.laws import parts as law_parts
 
 WRITTEN = ("launch.png", "named.png", "zoom.svg", "compare.png")
 

@@ -9,7 +9,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 ROOT = Path(__file__).resolve().parents[2]
-PLOT = "src/clutchwork/results/plot/*.py"
+PLOT = "src/clutchwork/plot/*.py"
 SCHEMATIC = "src/clutchwork/schematic/**/*.py"
 DIAGRAMS = "src/clutchwork/diagrams/**/*.py"
 CATALOGUE = "src/clutchwork/gearbox/catalogue/*.toml"

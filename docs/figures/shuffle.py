@@ -10,8 +10,8 @@ import numpy as np
 from groups import programs
 
 import clutchwork as cw
-from clutchwork.results.plot.figure import figure_of
-from clutchwork.results.plot.style import COLOURS
+from clutchwork.plot.figure import figure_of
+from clutchwork.plot.style import COLOURS
 
 mpl.use("agg")
 

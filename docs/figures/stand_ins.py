@@ -11,8 +11,8 @@ mpl.use("agg")
 import live
 
 import clutchwork as cw
-from clutchwork.results.plot.figure import figure_of
-from clutchwork.results.plot.style import COLOURS
+from clutchwork.plot.figure import figure_of
+from clutchwork.plot.style import COLOURS
 
 PLOTTED: dict[str, tuple[str | list[str], ...]] = {
     "shift": (

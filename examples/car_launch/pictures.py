@@ -8,9 +8,9 @@ from string import ascii_lowercase
 from typing import TYPE_CHECKING, NamedTuple
 
 import clutchwork as cw
-from clutchwork.results.plot.figure import figure_of
-from clutchwork.results.plot.panels import legend
-from clutchwork.results.plot.style import EVENT_LINE
+from clutchwork.plot.figure import figure_of
+from clutchwork.plot.panels import legend
+from clutchwork.plot.style import EVENT_LINE
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes

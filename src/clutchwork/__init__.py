@@ -24,6 +24,7 @@ from clutchwork.declare.calls import explain
 from clutchwork.declare.core import core
 from clutchwork.declare.docs import document
 from clutchwork.declare.registry import REGISTRY, declared, with_each
+from clutchwork.face import verbs as verbs
 from clutchwork.face.names import NAMES, PACKAGES
 
 __version__ = "0.1.0"

@@ -11,8 +11,8 @@ import numpy as np
 import pytest
 
 import clutchwork as cw
-from clutchwork.results.plot.curves import WORDS, thinned
-from clutchwork.results.plot.panels import SCALES
+from clutchwork.plot.curves import WORDS, thinned
+from clutchwork.plot.panels import SCALES
 from support import random_drivelines
 
 from .conftest import LINING, NAMES, example, two_discs

@@ -10,9 +10,9 @@ import pytest
 
 import clutchwork as cw
 from clutchwork.command.main import main
-from clutchwork.results.plot.sankey import amount
-from clutchwork.results.plot.sankey_graph import graph
-from clutchwork.results.plot.sankey_places import BAR, places
+from clutchwork.plot.sankey import amount
+from clutchwork.plot.sankey_graph import graph
+from clutchwork.plot.sankey_places import BAR, places
 from support import random_contacts, random_large
 from support.project import ROOT
 

@@ -18,8 +18,8 @@ import clutchwork as cw
 from clutchwork.base import html
 from clutchwork.command import report
 from clutchwork.declare.schema import REGISTRY, Role, specs
-from clutchwork.face.laws import curves
-from clutchwork.results.plot.signals import curve
+from clutchwork.driveline.laws import curves
+from clutchwork.plot.signals import curve
 from clutchwork.results.ratios import phases
 from clutchwork.signals.bases.waveform import value
 from support import samples

@@ -17,8 +17,8 @@ import scipy.io
 import xarray as xr
 
 import clutchwork as cw
-from clutchwork.results import exchange
-from clutchwork.results.exchange.safe_names import matlab
+from clutchwork import exchange
+from clutchwork.exchange.safe_names import matlab
 from support import random_drivelines
 from support.amount import seeds
 
@@ -291,7 +291,7 @@ def test_names_of_any_kind_survive(tmp_path: Path) -> None:
 
 
 def test_a_file_that_is_too_large_for_mat_says_so(run: cw.Trajectory, tmp_path: Path, monkeypatch: Any) -> None:
-    from clutchwork.results.exchange import mat
+    from clutchwork.exchange import mat
 
     monkeypatch.setattr(mat, "MOST_BYTES", 10_000)
     with pytest.raises(ValueError, match="choose signals with names="):

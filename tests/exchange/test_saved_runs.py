@@ -16,7 +16,7 @@ import pytest
 
 import clutchwork as cw
 from clutchwork.declare.schema import Role
-from clutchwork.results.exchange.saved import RUN_PARTS
+from clutchwork.run.save import RUN_PARTS
 from clutchwork.run.saved import RepeatError, RunFormatError
 from support import random_drivelines, random_mixes, samples
 from support.amount import amount

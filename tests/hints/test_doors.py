@@ -13,8 +13,8 @@ import pytest
 
 import clutchwork as cw
 from clutchwork.command.main import main
-from clutchwork.results.hints.hint import more_than
-from clutchwork.results.hints.registry import rules
+from clutchwork.hints.hint import more_than
+from clutchwork.hints.registry import rules
 from support.hint_models import CASES, launch, lonely
 
 ROOT = Path(__file__).resolve().parents[2]
@@ -39,7 +39,7 @@ def test_the_page_shows_what_is_printed() -> None:
 
 @pytest.mark.parametrize("limit", ["SHARE", "FEWEST", "SINTERED"])
 def test_the_limits_of_the_page_are_those_of_the_rules(limit: str) -> None:
-    from clutchwork.results.hints.rules import stiff, tie_up, too_hot
+    from clutchwork.hints.rules import stiff, tie_up, too_hot
 
     words = {
         "SHARE": (tie_up.SHARE, 0.1, "a tenth of the heat"),
@@ -52,7 +52,7 @@ def test_the_limits_of_the_page_are_those_of_the_rules(limit: str) -> None:
 
 
 def test_the_temperatures_of_the_rule_are_those_of_the_linings() -> None:
-    from clutchwork.results.hints.rules import too_hot
+    from clutchwork.hints.rules import too_hot
 
     table = (ROOT / "docs" / "elements" / "_linings.md").read_text(encoding="utf-8")
     brief = {float(number) for number in re.findall(r"\| (\d{3}), \d{3} \|", table)}

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 import clutchwork as cw
-from clutchwork.results.hints import registry
+from clutchwork.hints import registry
 from support import random_drivelines
 from support.amount import amount
 from support.hint_models import CASES, hill, launch, shift

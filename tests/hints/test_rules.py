@@ -9,8 +9,8 @@ from pathlib import Path
 import pytest
 
 import clutchwork as cw
-from clutchwork.results.hints.hint import Hint
-from clutchwork.results.hints.registry import rules
+from clutchwork.hints.hint import Hint
+from clutchwork.hints.registry import rules
 from support.hint_models import CASES, hill, juddering, launch, racing, shift, warm
 
 NAMES = sorted(CASES)

@@ -70,7 +70,7 @@ def test_each_panel_has_one_unit() -> None:
 
 
 def test_spans_of_locked_phases() -> None:
-    from clutchwork.results.plot.panels import spans
+    from clutchwork.plot.panels import spans
 
     time = np.array([0.0, 1.0, 2.0, 2.0, 3.0, 4.0])
     assert spans(time, np.array([False, True, True, False, False, True])) == [(1.0, 1.0), (4.0, 0.0)]
@@ -79,7 +79,7 @@ def test_spans_of_locked_phases() -> None:
 
 
 def test_matplotlib_is_imported_when_a_picture_is_drawn() -> None:
-    code = "import sys, clutchwork.results.trajectory, clutchwork.results.plot; assert 'matplotlib' not in sys.modules"
+    code = "import sys, clutchwork.run.trajectory, clutchwork.plot; assert 'matplotlib' not in sys.modules"
     subprocess.run([sys.executable, "-c", code], check=True)
 
 

@@ -9,11 +9,11 @@ import numpy as np
 import pytest
 
 from clutchwork.declare.layout import DONE, INTERRUPTED
-from clutchwork.results.trajectory import SimulationError
 from clutchwork.run import record as module
 from clutchwork.run.control import Control, Controller
 from clutchwork.run.record import Recording, record
 from clutchwork.run.simulation import refined
+from clutchwork.run.trajectory import SimulationError
 
 Make = Callable[..., Any]
 

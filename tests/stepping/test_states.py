@@ -13,7 +13,7 @@ import pytest
 
 import clutchwork as cw
 from clutchwork.base import archive
-from clutchwork.results.exchange.saved import RUN_PARTS, RunFormatError
+from clutchwork.run.save import RUN_PARTS, RunFormatError
 from support.amount import seeds
 from support.random_contacts import driveline as random_contacts
 from support.random_drivelines import T_END, describe

@@ -100,8 +100,9 @@ class System:
 
     def _repr_mimebundle_(self, **_: Any) -> dict[str, Any]:
         from clutchwork.base.rich import bundle
+        from clutchwork.base.verbs import do
 
-        return bundle(self, "system")
+        return bundle(self, *do("system.show", self))
 
     def __getattr__(self, name: str) -> Array:
         own = self.__dict__

@@ -22,6 +22,7 @@ class DeepKeyError(ValueError):
 
 def parsed(text: str) -> dict[str, Any]:
     """The tables of a file; ValueError says what is wrong and where."""
+    # a start that reads no file needs none
     import tomllib
 
     if found := _LONG_KEY.search(text):

@@ -14,7 +14,8 @@ from clutchwork.calibration.limits import Limit
 from clutchwork.calibration.memory import Checkpoint
 from clutchwork.calibration.method import SOLVERS
 from clutchwork.calibration.problem import CalibrationProblem, Mistakes, problem, refuse_bounds
-from clutchwork.calibration.result import Calibration, CalibrationInterrupted, SearchSettings, found_by
+from clutchwork.calibration.record import SearchSettings
+from clutchwork.calibration.result import Calibration, CalibrationInterrupted, found_by
 from clutchwork.calibration.scatter import Scatter
 from clutchwork.calibration.search import MultiStartSearch
 from clutchwork.calibration.solving import SearchMethod
@@ -102,7 +103,9 @@ def calibrate(
     return searched(wanted, asked, None if file is None else path_of("calibrate", file, "shift.json"), progress)
 
 
-def searched(wanted: CalibrationProblem, asked: SearchSettings, file: Path | None, progress: Any) -> Calibration:
+def searched(
+    wanted: CalibrationProblem, asked: SearchSettings, file: Path | None = None, progress: Any = False
+) -> Calibration:
     """What a search finds."""
     outputs = {str(number): one for number, one in enumerate(wanted.outputs)}
     function: Any = None
@@ -126,8 +129,8 @@ def searched(wanted: CalibrationProblem, asked: SearchSettings, file: Path | Non
         except KeyboardInterrupt:
             memory.keep(search.found.values(), now=True)
             message = f"interrupted after {search.asked} points; the best so far is in .calibration"
-            raise CalibrationInterrupted(message, found_by(search, asked)) from None
-        return found_by(search, asked)
+            raise CalibrationInterrupted(message, found_by(search, asked, searched)) from None
+        return found_by(search, asked, searched)
 
 
 def _no_mean(wanted: CalibrationProblem) -> list[str]:

@@ -17,17 +17,15 @@ from clutchwork.base.paths import fitting
 from clutchwork.base.plural import columns
 from clutchwork.base.progress import followed
 from clutchwork.base.quote import quote
-from clutchwork.calibration.calibrate import searched
 from clutchwork.calibration.numbers import number
-from clutchwork.calibration.result import CalibrationError, with_limit
-from clutchwork.results.plot.chosen import PICTURES
-from clutchwork.results.plot.figure import figure_of, written
-from clutchwork.results.plot.style import COLOURS
+from clutchwork.calibration.record import CalibrationError, CalibrationRecord
+from clutchwork.plot.chosen import PICTURES
+from clutchwork.plot.figure import figure_of, written
+from clutchwork.plot.style import COLOURS
 
 if TYPE_CHECKING:
     from clutchwork.calibration.limits import Settled
-    from clutchwork.calibration.result import Calibration
-    from clutchwork.results.plot.canvas import Picture
+    from clutchwork.plot.canvas import Picture
 
 Array = NDArray[np.float64]
 HEIGHT = 80.0  # mm
@@ -44,7 +42,7 @@ class Front:
     bounds: Array
     goals: Array  # NaN where the limits cannot be held
     slopes: Array  # of the goal over the bound, from the multipliers
-    calibrations: tuple[Calibration, ...]
+    calibrations: tuple[CalibrationRecord, ...]
 
     def to_pandas(self) -> Any:
         """A pandas DataFrame with one line for each bound. Needs pandas."""
@@ -62,20 +60,20 @@ class Front:
         return drawn(self, None if path is None else fitting("front.plot", path, "front.png", PICTURES))
 
 
-def front(found: Calibration, limit: Settled, bounds: Sequence[Any], progress: Any) -> Front:
+def front(found: CalibrationRecord, limit: Settled, bounds: Sequence[Any], progress: Any) -> Front:
     """Each bound from what the one before led to."""
     ends = [one for one in (number(given, limit.unit) for given in bounds) if one is not None]
     place = next(k for k, one in enumerate(found.problem.limits) if one is limit)
     if isinstance(bounds, str) or not ends or len(ends) < len(bounds) or limit.is_equal:
         raise UseError("front", [f"bounds are {quote(bounds)}: give several numbers for one side of {limit.name}"])
-    made, last, above = list["Calibration"](), found, np.isfinite(limit.upper)
+    made, last, above = list[CalibrationRecord](), found, np.isfinite(limit.upper)
     goals, slopes = np.full((2, len(ends)), np.nan)
     with followed(progress, len(ends), "front", "(bounds done, bounds)", unit=" bounds") as told:
         for count, end in enumerate(ends):
             side = replace(limit, upper=float(end)) if above else replace(limit, lower=float(end))
-            moved = with_limit(found.problem, limit, side)
+            limits = tuple(side if one is limit else one for one in found.problem.limits)
             try:
-                last = searched(replace(moved, begin=last.x), replace(found.asked, starts=1), None, False)
+                last = found.search(replace(found.problem, limits=limits, begin=last.x), replace(found.asked, starts=1))
                 made.append(last)
             except CalibrationError:
                 last = found

@@ -7,28 +7,28 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from clutchwork.calibration.terms import Jerk, OutputTerm, RmsJerk, SquaredSlope, TableSlope
-from clutchwork.results.plot.compare import compare
+from clutchwork.plot.compare import compare
 
 if TYPE_CHECKING:
-    from clutchwork.calibration.result import Calibration
-    from clutchwork.results.plot.canvas import Picture
+    from clutchwork.calibration.record import CalibrationRecord
+    from clutchwork.plot.canvas import Picture
 
 MOST_PANELS = 5
 
 
-def before_and_after(found: Calibration, signals: Sequence[Any], path: str | Path | None) -> Picture:
+def before_and_after(found: CalibrationRecord, signals: Sequence[Any], path: str | Path | None) -> Picture:
     """Both runs over each other."""
     runs = {"before": found.run_before(), "after": found.run()}
     chosen = list(signals) or usual(found, set(runs["after"].names))
     return compare(runs, *chosen, path=path)
 
 
-def usual(found: Calibration, known: set[str]) -> list[str]:
+def usual(found: CalibrationRecord, known: set[str]) -> list[str]:
     """Signals that the free numbers, the goal and the limits are about."""
     return list(dict.fromkeys(name for name in _signals(found) if name in known))[:MOST_PANELS]
 
 
-def _signals(found: Calibration) -> Iterator[str]:
+def _signals(found: CalibrationRecord) -> Iterator[str]:
     problem = found.problem
     for one in problem.unknowns:
         for name in one.numbers:

@@ -22,7 +22,7 @@ from clutchwork.sweeps.outputs import AtEnd, AtTimes, Computed, Extreme, Integra
 if TYPE_CHECKING:
     from clutchwork.calibration.names import TimeTable
     from clutchwork.gradients.parameters import Tunable
-    from clutchwork.results.trajectory import Trajectory
+    from clutchwork.run.trajectory import Trajectory
 
 Array = NDArray[np.float64]
 OUTPUTS = (AtEnd, AtTimes, Extreme, Integral, SquaredJerk, When)

@@ -17,7 +17,7 @@ from clutchwork.gradients.differentiable import differentiable
 
 if TYPE_CHECKING:
     from clutchwork.calibration.limits import Settled
-    from clutchwork.calibration.result import Calibration
+    from clutchwork.calibration.record import CalibrationRecord
 
 Array = NDArray[np.float64]
 # a limit counts as held where it is passed by less, in shares of its bound
@@ -57,7 +57,7 @@ class Verified:
         return f"all limits hold in {good} of {count} samples, {goal}\n\n{columns(lines, right=(1, 2, 3, 4, 5))}"
 
 
-def verify(found: Calibration, count: int, seed: int, threads: int | None) -> Verified:
+def verify(found: CalibrationRecord, count: int, seed: int, threads: int | None) -> Verified:
     """Samples that are drawn anew."""
     problem = found.problem
     if not problem.scatter:

@@ -4,17 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from math import floor, isfinite, log10
-from typing import TYPE_CHECKING, Protocol
+from typing import TYPE_CHECKING
 
 from clutchwork.base.plural import columns, counted
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping, Sequence
-
     from clutchwork.calibration.held import Held
-    from clutchwork.calibration.optimal import Certificate
-    from clutchwork.calibration.outcome import Outcome
-    from clutchwork.calibration.problem import CalibrationProblem
+    from clutchwork.calibration.record import CalibrationRecord
 
 # values of a table with more lines are shown without the middle
 MOST_VALUES = 24
@@ -22,75 +18,7 @@ MOST_VALUES = 24
 ROUND_OFF = 1e-9
 
 
-class Told(Protocol):
-    """What is said of a calibration."""
-
-    @property
-    def problem(self) -> CalibrationProblem:
-        """What was asked for."""
-
-    @property
-    def values(self) -> Mapping[str, float]:
-        """The unknowns that were found."""
-
-    @property
-    def start(self) -> Mapping[str, float]:
-        """The unknowns as the model has them."""
-
-    @property
-    def goal(self) -> tuple[float, float]:
-        """Before and after."""
-
-    @property
-    def limits(self) -> Sequence[Held]:
-        """All limits."""
-
-    @property
-    def certificate(self) -> Certificate:
-        """What holds at the values."""
-
-    @property
-    def outcomes(self) -> Sequence[Outcome]:
-        """What each start led to."""
-
-    @property
-    def samples(self) -> Sequence[object]:
-        """Samples of production that decided it."""
-
-    @property
-    def finished(self) -> bool:
-        """Whether the search was not interrupted."""
-
-    @property
-    def corner(self) -> str:
-        """Why the gradient is one of differences."""
-
-    @property
-    def whole(self) -> bool:
-        """Whether all samples of production were run."""
-
-    @property
-    def feasible(self) -> bool:
-        """Whether all limits hold."""
-
-    @property
-    def around(self) -> float:
-        """What is left of the gradients around it together."""
-
-    @property
-    def spread(self) -> Sequence[float]:
-        """Goals that the starts reached."""
-
-    @property
-    def solved(self) -> bool:
-        """Whether it is optimal."""
-
-    @property
-    def effort(self) -> str:
-        """How it was searched for."""
-
-
-def text(found: Told) -> str:
+def text(found: CalibrationRecord) -> str:
     """All of it for the terminal."""
     head = (
         f"{found.problem.goal.name}: {_number(found.goal[0])} -> {_number(found.goal[1])} {found.problem.unit}".rstrip()
@@ -99,7 +27,7 @@ def text(found: Told) -> str:
     return "\n\n".join(part for part in parts if part)
 
 
-def _values(found: Told) -> str:
+def _values(found: CalibrationRecord) -> str:
     lines = [["number", "before", "after", "unit", ""]]
     walls = {number: side for number, side, _ in found.certificate.at_bounds}
     for number, one in enumerate(found.problem.unknowns):
@@ -111,7 +39,7 @@ def _values(found: Told) -> str:
     return columns(lines, right=(1, 2))
 
 
-def _limits(found: Told) -> str:
+def _limits(found: CalibrationRecord) -> str:
     if not found.limits:
         return ""
     lines = [["limit", "from", "to", "before", "after", "unit", ""]]
@@ -134,7 +62,7 @@ def _number(value: float) -> str:
     return f"{value:.6g}"
 
 
-def costs(found: Told) -> Iterator[str]:
+def costs(found: CalibrationRecord) -> Iterator[str]:
     """What each active limit costs: "1000 J more of c1.heat allowed saves 0.3 m/s3 of rms_jerk(car)"."""
     # where no values hold all limits there is nothing to be saved
     for one in found.limits if not any(each.broken for each in found.limits) else ():
@@ -145,7 +73,7 @@ def costs(found: Told) -> Iterator[str]:
         yield from _cost(one, found, "less asked", one.lower, one.by_lower)
 
 
-def _cost(one: Held, found: Told, moved: str, bound: float, saved: float) -> Iterator[str]:
+def _cost(one: Held, found: CalibrationRecord, moved: str, bound: float, saved: float) -> Iterator[str]:
     if not one.active or saved == 0.0:
         return
     amount = _round(abs(bound) or max(map(abs, one.before)) or 1.0)
@@ -158,7 +86,7 @@ def _round(size: float) -> float:
     return float(10.0 ** floor(log10(size / 10.0)))
 
 
-def _effort(found: Told) -> str:
+def _effort(found: CalibrationRecord) -> str:
     runs = sum(one.runs for one in found.outcomes)
     said = [f"{found.effort}, {counted(len(found.outcomes), 'starts')}, {counted(runs, 'runs with gradient')}"]
     said.append(f"largest violation {found.certificate.violation:.1g} of its scale")
@@ -175,7 +103,7 @@ def _effort(found: Told) -> str:
     return "; ".join(said)
 
 
-def faults(found: Told) -> Iterator[str]:
+def faults(found: CalibrationRecord) -> Iterator[str]:
     """What stands in the way of using the values."""
     if not found.finished:
         yield "the search was interrupted: these are the best values so far"

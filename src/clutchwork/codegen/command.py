@@ -43,7 +43,7 @@ def export_command(asked: argparse.Namespace) -> int:
     """Export and report; the exit code."""
     from clutchwork.base.errors import ModelWarning
     from clutchwork.codegen import export_c
-    from clutchwork.face.driveline import Driveline
+    from clutchwork.driveline.driveline import Driveline
 
     shell.writable([asked.out / "model.h"])
     signals = None if asked.signals is None else [name.strip() for name in asked.signals.split(",")]

@@ -15,7 +15,7 @@ from clutchwork.codegen.model import Exported, chosen, files
 from clutchwork.codegen.sources import sources
 from clutchwork.declare.calls import explained
 from clutchwork.declare.options import Options
-from clutchwork.face.driveline import Driveline
+from clutchwork.driveline.driveline import Driveline
 from clutchwork.results.channels import channels
 from clutchwork.run.settings import merged
 

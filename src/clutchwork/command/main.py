@@ -6,7 +6,6 @@ import argparse
 import os
 import sys
 from collections.abc import Sequence
-from importlib import import_module
 from typing import Any
 
 from clutchwork.base.errors import ModelError, ModelFileError
@@ -24,12 +23,20 @@ from clutchwork.base.shell import (
     example_text,
     tell_json,
 )
+from clutchwork.codegen import command as codegen
 from clutchwork.command import check, completion, new, plot, reference, run
+from clutchwork.diagrams import command as diagrams
+from clutchwork.fit import command as fit
+from clutchwork.linear import command as linear
+from clutchwork.page import command as page
+from clutchwork.rig import command as rig
+from clutchwork.schematic import command as schematic
+from clutchwork.sweeps import command as sweeps
 
 __all__ = ["EXIT_CODES", "INTERRUPTED", "STOPPED", "main", "parser"]
 
-# rooms with a command of their own, in command.py
-ROOMS = ("schematic", "diagrams", "sweeps", "linear", "rig", "fit", "codegen", "page")
+# those of rooms, each in its command.py
+ROOMS = (schematic, diagrams, sweeps, linear, rig, fit, codegen, page)
 ABOUT = "Simulates drivelines with clutches and brakes: engagements, launches, gear shifts."
 EXAMPLES = (
     ("clutchwork demo", "see what it does: a gearbox launches and shifts"),
@@ -87,7 +94,7 @@ def parser() -> Parser:
     for own in (new, check, run, plot):
         own.add_commands(commands)
     for room in ROOMS:
-        import_module(f"clutchwork.{room}.command").add_command(commands)
+        room.add_command(commands)
     for own in (reference, completion):
         own.add_commands(commands)
     return top

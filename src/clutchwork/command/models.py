@@ -29,7 +29,7 @@ def add_set(parser: Any) -> None:
 def system_of(path: Path, settings: Sequence[str] = ()) -> System:
     """The system of a model file with other values; what it is warned of goes to standard error."""
     from clutchwork.declare.wording import words_of_files
-    from clutchwork.face.driveline import Driveline
+    from clutchwork.driveline.driveline import Driveline
     from clutchwork.files.given import given_values
 
     with warnings.catch_warnings(), words_of_files():

@@ -11,7 +11,7 @@ from clutchwork.base.shell import DONE, FilesError, add_command, add_json, tell,
 from clutchwork.declare.wording import words_of_files
 
 if TYPE_CHECKING:
-    from clutchwork.results.trajectory import Trajectory
+    from clutchwork.run.trajectory import Trajectory
 
 # endings of model files
 MODELS = (".toml", ".json")

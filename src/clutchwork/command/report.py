@@ -11,18 +11,18 @@ from typing import TYPE_CHECKING, Any
 from clutchwork.base.plural import columns, counted
 from clutchwork.base.quote import LONGEST, shortened
 from clutchwork.base.shell import paragraphs, width
+from clutchwork.hints.registry import of_model
 from clutchwork.model.changes import all_names, targets_of
 from clutchwork.results.channels import channels
 from clutchwork.results.gears import named_closed
-from clutchwork.results.hints.registry import of_model
 from clutchwork.results.overview import number, sizes
 from clutchwork.results.ratios import Gears, Phase, follows_from, gears, head_of
 
 if TYPE_CHECKING:
     from clutchwork.assembly.system import System
+    from clutchwork.hints.hint import Hint, Hints
     from clutchwork.results.events import Events
-    from clutchwork.results.hints.hint import Hint, Hints
-    from clutchwork.results.trajectory import Trajectory
+    from clutchwork.run.trajectory import Trajectory
 
 MOST_LINES = 40
 # signals whose last value is reported

@@ -35,7 +35,7 @@ if TYPE_CHECKING:
     from clutchwork.assembly.system import System
     from clutchwork.declare.options import Options
     from clutchwork.results.state import State
-    from clutchwork.results.trajectory import Trajectory
+    from clutchwork.run.trajectory import Trajectory
 
 DEMO = Path("examples", "six_speed", "model.toml")
 EXAMPLES = (
@@ -236,7 +236,7 @@ def _save_state(run: Trajectory, path: Path, _chosen: SignalFiles) -> None:
 
 def _writer(path: Path) -> Writer:
     """What writes a file for another program."""
-    from clutchwork.results.exchange import ENDINGS
+    from clutchwork.exchange import ENDINGS
 
     if path.suffix.lower() not in ENDINGS:
         known = f"known: {', '.join(ENDINGS)}"

@@ -398,8 +398,9 @@ class Law(Declared):
 
     def _repr_mimebundle_(self, **_: Any) -> dict[str, Any]:
         from clutchwork.base.rich import bundle
+        from clutchwork.base.verbs import do
 
-        return bundle(self, "law")
+        return bundle(self, *do("law.show", self))
 
 
 class Segment(NamedTuple):
@@ -475,8 +476,9 @@ class Signal(Declared):
 
     def _repr_mimebundle_(self, **_: Any) -> dict[str, Any]:
         from clutchwork.base.rich import bundle
+        from clutchwork.base.verbs import do
 
-        return bundle(self, "signal")
+        return bundle(self, *do("signal.show", self))
 
 
 @dataclass(frozen=True)

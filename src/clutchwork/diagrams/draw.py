@@ -12,7 +12,12 @@ from clutchwork.base.paths import path_fault
 from clutchwork.base.quote import listed, quote
 from clutchwork.declare.calls import explained
 from clutchwork.diagrams.kinds import KINDS
+from clutchwork.diagrams.lever import paint as lever
+from clutchwork.diagrams.lever.layout import layout as lever_layout
 from clutchwork.diagrams.picture import Diagram
+from clutchwork.diagrams.speed import chart, plan
+from clutchwork.diagrams.stick import paint as stick
+from clutchwork.diagrams.stick.layout import layout as stick_layout
 from clutchwork.gearbox.gearbox import Gearbox
 
 # kinds that show each set as a lever
@@ -82,17 +87,10 @@ def _has_lever(one: GearSet) -> bool:
 
 def _marks(box: Gearbox, kind: str, now: GearState | None, merged: bool) -> list[Mark]:
     if kind == "stick":
-        from clutchwork.diagrams.stick import layout, paint
-
-        return paint.painted(box, layout.layout(box), now)
+        return stick.painted(box, stick_layout(box), now)
     states = list(box.states().values())
     if kind in LEVERS:
         box = replace(box, sets=tuple(filter(_has_lever, box.sets)))
     if kind == "lever":
-        from clutchwork.diagrams.lever import layout as hung
-        from clutchwork.diagrams.lever import paint as lever
-
-        return lever.painted(box, hung.layout(box, merged=merged), now)
-    from clutchwork.diagrams.speed import chart, plan
-
+        return lever.painted(box, lever_layout(box, merged=merged), now)
     return plan.painted(box, states, now) if kind == "speeds" else chart.painted(box, states, now)

@@ -9,6 +9,8 @@ from typing import Any
 from clutchwork.base.errors import UseError
 from clutchwork.base.quote import quote
 from clutchwork.executors.executor import Executor
+from clutchwork.executors.on_dask import OnDask
+from clutchwork.executors.on_ray import OnRay
 from clutchwork.executors.threads import Threads
 
 WAYS = (
@@ -36,15 +38,9 @@ def _executor(call: str, on: Any, threads: int, asked: int | None) -> Executor:
     if on is None:
         return Threads(threads)
     if hasattr(on, "scheduler_info") and hasattr(on, "submit"):
-        from clutchwork.executors.on_dask import OnDask
-
         return OnDask(None, asked, on)
     if on == "dask" or (isinstance(on, str) and on.startswith(DASK)):
-        from clutchwork.executors.on_dask import OnDask
-
         return OnDask(None if on == "dask" else on, asked)
     if on in ("ray", "auto") or (isinstance(on, str) and (on.startswith("ray://") or on.rpartition(":")[2].isdigit())):
-        from clutchwork.executors.on_ray import OnRay
-
         return OnRay(None if on == "ray" else on, asked)
     raise UseError(call, [f"on is {quote(on)}: give {WAYS}"])

@@ -1,1 +1,1 @@
-"""The public face: Driveline, and the names of the package."""
+"""The public face: the names of the package, and who does the verbs of things from lower rooms."""

@@ -104,7 +104,7 @@ def fit_command(asked: argparse.Namespace) -> int:
 def law_from_text(kind: str, text: str) -> Law:
     """A law from its kind and `name=value,...`, read as in a model file: units, near matches and bounds included."""
     from clutchwork.base.errors import ModelWarning
-    from clutchwork.face.driveline import Driveline
+    from clutchwork.driveline.driveline import Driveline
 
     values = {name: _value(value) for name, value in _pairs("--start", text)}
     shaft = {"name": "shaft", "inertia": 1.0}

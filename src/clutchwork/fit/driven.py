@@ -24,7 +24,7 @@ if TYPE_CHECKING:
     from clutchwork.assembly.system import System
     from clutchwork.fit.record import Record
     from clutchwork.results.channels import Channel
-    from clutchwork.results.trajectory import Trajectory
+    from clutchwork.run.trajectory import Trajectory
 
 Array = NDArray[np.float64]
 

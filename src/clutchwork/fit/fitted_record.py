@@ -13,7 +13,7 @@ from clutchwork.base.classes import dataclass
 from clutchwork.fit.traces import Trace
 
 if TYPE_CHECKING:
-    from clutchwork.results.trajectory import Trajectory
+    from clutchwork.run.trajectory import Trajectory
 
 Array = NDArray[np.float64]
 

@@ -8,9 +8,9 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from clutchwork.base.paths import fitting
-from clutchwork.results.plot.chosen import PICTURES
-from clutchwork.results.plot.figure import figure_of
-from clutchwork.results.plot.style import COLOURS
+from clutchwork.plot.chosen import PICTURES
+from clutchwork.plot.figure import figure_of
+from clutchwork.plot.style import COLOURS
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes

@@ -11,7 +11,7 @@ from clutchwork.fit.record import Record
 from clutchwork.fit.records import fit_records
 
 if TYPE_CHECKING:
-    from clutchwork.face.driveline import Driveline
+    from clutchwork.driveline.driveline import Driveline
     from clutchwork.fit.response_result import ResponseFit
 
 

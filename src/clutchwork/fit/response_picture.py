@@ -7,9 +7,9 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from clutchwork.base.paths import fitting
-from clutchwork.results.plot.chosen import PICTURES
-from clutchwork.results.plot.figure import figure_of
-from clutchwork.results.plot.style import COLOURS
+from clutchwork.plot.chosen import PICTURES
+from clutchwork.plot.figure import figure_of
+from clutchwork.plot.style import COLOURS
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes

@@ -20,7 +20,7 @@ from clutchwork.fit.result import Parameter, table
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
-    from clutchwork.results.trajectory import Trajectory
+    from clutchwork.run.trajectory import Trajectory
 
 Array = NDArray[np.float64]
 

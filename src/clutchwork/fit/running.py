@@ -12,11 +12,14 @@ from numpy.typing import NDArray
 from clutchwork.assembly.records import frozen
 from clutchwork.base.errors import ModelWarning
 from clutchwork.declare.options import Options
-from clutchwork.face.driveline import Driveline
+from clutchwork.driveline.driveline import Driveline
+from clutchwork.elements.brake import Brake
+from clutchwork.elements.prescribed_speed import PrescribedSpeed
 from clutchwork.fit.sliding import at_rest
 from clutchwork.model.pools import Pools
 from clutchwork.run.failure import StoppedEarly
 from clutchwork.run.simulation import simulate
+from clutchwork.signals.table import Table
 
 if TYPE_CHECKING:
     from clutchwork.assembly.system import System
@@ -67,10 +70,6 @@ class Running:
 
 def _bench(measured: Measurement, law: Law, lead: float) -> tuple[System, int]:
     """A shaft with the measured slip, braked by the law under the measured load; where the law's parameters begin."""
-    from clutchwork.elements.brake import Brake
-    from clutchwork.elements.prescribed_speed import PrescribedSpeed
-    from clutchwork.signals.table import Table
-
     bench = Driveline("measurement")
     shaft = bench.shaft("slider", inertia=1.0)
     times = (measured.time + lead).tolist()

@@ -7,12 +7,12 @@ from dataclasses import fields
 from pathlib import Path
 from typing import Any
 
-from clutchwork.base.above import above
 from clutchwork.base.classes import dataclass
 from clutchwork.base.errors import Problem, UseError, near
 from clutchwork.base.paths import fitting, path_of
 from clutchwork.base.plural import counted
 from clutchwork.base.quote import listed, quote
+from clutchwork.base.verbs import do
 from clutchwork.base.writing import put
 from clutchwork.declare.calls import explain, explained, explained_methods
 from clutchwork.gearbox import analysis, checks, motion, store
@@ -70,7 +70,7 @@ class Gearbox(Definition):
 
     def page(self, path: str | Path) -> Path:
         """Write a page, one HTML file: its reader chooses a gear and sees power flow, levers, speeds and torques."""
-        return above("box.page", self, path)  # type: ignore[no-any-return]
+        return do("box.page", self, path)  # type: ignore[no-any-return]
 
     def check(self) -> list[Problem]:
         """All mistakes: names, teeth, rows of the shift table that make no gear, published ratios that are missed."""

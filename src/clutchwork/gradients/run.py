@@ -6,15 +6,13 @@ from typing import Any
 
 from clutchwork.gradients.differentiable import made
 from clutchwork.results.gradient import Gradient, NoGradient
-from clutchwork.results.trajectory import Trajectory
 from clutchwork.run.control import Control
-from clutchwork.run.simulation import Job
+from clutchwork.run.trajectory import Trajectory
 
 
 def gradient_of(run: Trajectory, of: Any, by: Any, side: Any) -> Gradient:
     """Derivatives of what a run gave by numbers of its driveline."""
-    job = getattr(run.repeat, "__self__", None)
-    if not isinstance(job, Job) or job.start is not None or not isinstance(job.course, Control):
+    if run.lacks or run.start is not None or not isinstance(run.course, Control):
         remedy = "run it as a whole by simulate, with signals in place of what was set"
         raise NoGradient(
             [f"the run began at a state, or was stepped from outside, which is not differentiated; {remedy}"]

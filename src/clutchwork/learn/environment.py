@@ -84,6 +84,7 @@ def environment(
     if wrong:
         raise UseError("cw.environment", wrong)
     refuse_unfit(system, tried)
+    # needs Gymnasium
     from clutchwork.learn.gym import DrivelineEnv
 
     def begin(changed: System) -> Simulator:

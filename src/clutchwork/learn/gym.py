@@ -17,7 +17,7 @@ from clutchwork.base.quote import quote
 from clutchwork.learn.moment import Moment
 from clutchwork.learn.ranges import Ranges
 from clutchwork.learn.variation import Draw
-from clutchwork.results.trajectory import SimulationError
+from clutchwork.run.trajectory import SimulationError
 from clutchwork.stepping.simulator import Simulator
 
 Observation = NDArray[np.float32]

@@ -10,6 +10,7 @@ from clutchwork.assembly.wiring import wiring
 from clutchwork.base.classes import dataclass
 from clutchwork.base.errors import near
 from clutchwork.base.quote import quote
+from clutchwork.declare.ports import ports
 from clutchwork.results.channels import ACCELERATION, channels
 from clutchwork.results.forms import Mode
 
@@ -45,8 +46,6 @@ def possible_inputs(system: System) -> dict[str, Excitation]:
 
 
 def _ports(component: Any) -> list[Any]:
-    from clutchwork.declare.ports import ports
-
     nodes = list(ports(component).values())
     return [node for node in nodes if not node.fixed] or nodes
 

@@ -50,7 +50,7 @@ def add_command(subparsers: Any) -> None:
 
 def linearise_command(asked: argparse.Namespace) -> int:
     """Linearise and report; the exit code."""
-    from clutchwork.results.trajectory import SimulationError
+    from clutchwork.run.trajectory import SimulationError
 
     files = [asked.plot] if asked.plot is not None else []
     shell.writable(files)
@@ -71,7 +71,7 @@ def linearise_command(asked: argparse.Namespace) -> int:
 
 def _linearised(asked: argparse.Namespace) -> Linear:
     from clutchwork.base.errors import ModelWarning
-    from clutchwork.face.driveline import Driveline
+    from clutchwork.driveline.driveline import Driveline
     from clutchwork.linear.linearise import linearise
 
     driveline = Driveline.load(asked.model)

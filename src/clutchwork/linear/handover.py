@@ -9,9 +9,9 @@ from typing import TYPE_CHECKING, Any
 from clutchwork.base.extras import need
 
 if TYPE_CHECKING:
-    from clutchwork.linear.described import LinearSystem
     from clutchwork.linear.modes import NaturalMode
     from clutchwork.linear.quantity import Quantity
+    from clutchwork.linear.system import LinearSystem
 
 
 def to_control(lin: LinearSystem) -> Any:

@@ -19,9 +19,9 @@ from clutchwork.declare.layout import MODES
 from clutchwork.declare.quantity import QuantityError, has_unit, in_si
 from clutchwork.linear.reached import options_of, reached, refuse_stopped, started, step_over
 from clutchwork.results.state import State
-from clutchwork.results.trajectory import Trajectory
 from clutchwork.run.failure import StoppedEarly
 from clutchwork.run.simulation import simulate
+from clutchwork.run.trajectory import Trajectory
 from clutchwork.stepping.simulator import Simulator
 
 if TYPE_CHECKING:

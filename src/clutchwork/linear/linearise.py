@@ -23,8 +23,8 @@ from clutchwork.results.channels import channels
 if TYPE_CHECKING:
     from clutchwork.assembly.system import System
     from clutchwork.results.forms import Form
-    from clutchwork.results.trajectory import Trajectory
     from clutchwork.run.simulation import Assembles
+    from clutchwork.run.trajectory import Trajectory
     from clutchwork.stepping.simulator import Simulator
 
 Array = NDArray[np.float64]

@@ -8,16 +8,16 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from clutchwork.base.paths import fitting
-from clutchwork.results.plot.chosen import PICTURES
-from clutchwork.results.plot.figure import figure_of
-from clutchwork.results.plot.style import COLOURS
+from clutchwork.plot.chosen import PICTURES
+from clutchwork.plot.figure import figure_of
+from clutchwork.plot.style import COLOURS
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
-    from clutchwork.linear.described import LinearSystem
     from clutchwork.linear.modes import NaturalMode
+    from clutchwork.linear.system import LinearSystem
 
 STABLE, GROWING = COLOURS[0], COLOURS[1]
 PANEL = 24.0  # mm

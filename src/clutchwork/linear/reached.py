@@ -7,17 +7,17 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from clutchwork.declare.layout import DONE
-from clutchwork.results.trajectory import SimulationError
 from clutchwork.run.begin import begun
 from clutchwork.run.control import controllers
 from clutchwork.run.settings import without_end
 from clutchwork.run.simulation import simulate, told
+from clutchwork.run.trajectory import SimulationError
 
 if TYPE_CHECKING:
     from clutchwork.assembly.system import System
     from clutchwork.declare.options import Options
     from clutchwork.results.state import State
-    from clutchwork.results.trajectory import Trajectory
+    from clutchwork.run.trajectory import Trajectory
 
 # a run that is only asked for its start [s]
 SHORT = 1e-6

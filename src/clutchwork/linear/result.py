@@ -2,29 +2,27 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
-from functools import cached_property
+from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from clutchwork.base import html
-from clutchwork.base.classes import dataclass
 from clutchwork.base.errors import UseError
 from clutchwork.base.plural import columns, counted
 from clutchwork.base.quote import quote
 from clutchwork.declare.calls import explained, explained_methods
-from clutchwork.declare.layout import MODES
 from clutchwork.declare.quantity import QuantityError, has_unit, in_si
+from clutchwork.linear.handover import to_control, to_dict, to_scipy
+from clutchwork.linear.picture import picture
 from clutchwork.linear.quantity import Quantity, amount, per_second
+from clutchwork.linear.system import LinearSystem
 
 if TYPE_CHECKING:
     from pathlib import Path
 
     from matplotlib.figure import Figure
-
-    from clutchwork.linear.modes import NaturalModes
 
 Array = NDArray[Any]
 
@@ -32,92 +30,12 @@ MOST_SHOWN = 20
 
 
 @explained_methods("lin")
-@dataclass(frozen=True, eq=False, repr=False)
-class Linear:
+class Linear(LinearSystem):
     """A linear system about one instant: d/dt x = rate + A x + B u, y = C x + D u.
 
     x, u and y are what states, inputs and outputs deviate from their values at the instant: `state`, `input`, `output`.
     `rate` is how the states move there; it is zero where the driveline moves steadily.
     """
-
-    model: str
-    time: float  # s
-    A: Array
-    B: Array
-    C: Array
-    D: Array
-    state_quantities: tuple[Quantity, ...]
-    input_quantities: tuple[Quantity, ...]
-    output_quantities: tuple[Quantity, ...]
-    modes_of_contacts: Mapping[str, int]  # a number of layout.MODES
-    notes: tuple[str, ...]  # what was undecided, and which side was taken
-    shafts: tuple[str, ...]
-    shaft_speeds: Array  # speeds of all shafts over the states
-
-    @property
-    def matrices(self) -> tuple[Array, Array, Array, Array]:
-        """A, B, C and D."""
-        return self.A, self.B, self.C, self.D
-
-    @property
-    def states(self) -> tuple[str, ...]:
-        """Names of the states, in the order of A."""
-        return tuple(quantity.name for quantity in self.state_quantities)
-
-    @property
-    def inputs(self) -> tuple[str, ...]:
-        """Names of the inputs, in the order of the columns of B."""
-        return tuple(quantity.name for quantity in self.input_quantities)
-
-    @property
-    def outputs(self) -> tuple[str, ...]:
-        """Names of the outputs, in the order of the rows of C."""
-        return tuple(quantity.name for quantity in self.output_quantities)
-
-    @property
-    def units(self) -> dict[str, str]:
-        """Unit of every state, input and output."""
-        every = (*self.input_quantities, *self.output_quantities, *self.state_quantities)
-        return {quantity.name: quantity.unit for quantity in every}
-
-    @property
-    def state(self) -> dict[str, float]:
-        """Values of the states at the instant."""
-        return {quantity.name: quantity.value for quantity in self.state_quantities}
-
-    @property
-    def rate(self) -> dict[str, float]:
-        """Rates of the states at the instant, in the unit of each per second."""
-        return {quantity.name: quantity.rate for quantity in self.state_quantities}
-
-    @property
-    def input(self) -> dict[str, float]:
-        """Values of the inputs at the instant."""
-        return {quantity.name: quantity.value for quantity in self.input_quantities}
-
-    @property
-    def output(self) -> dict[str, float]:
-        """Values of the outputs at the instant."""
-        return {quantity.name: quantity.value for quantity in self.output_quantities}
-
-    @property
-    def contacts(self) -> dict[str, str]:
-        """How each contact is: locked, forward, backward or open."""
-        return {name: MODES[mode] for name, mode in self.modes_of_contacts.items()}
-
-    @cached_property
-    def eigenvalues(self) -> Array:
-        """Eigenvalues of A [1/s], slowest first."""
-        from clutchwork.linear.modes import eigenvalues
-
-        return eigenvalues(self.A)
-
-    @cached_property
-    def modes(self) -> NaturalModes:
-        """Natural modes: frequency, damping, time constant and shape of each; `print` shows a table."""
-        from clutchwork.linear.modes import natural_modes
-
-        return natural_modes(self.A, self.shafts, self.shaft_speeds, self.state_quantities)
 
     @explained("frequency_response")
     def frequency_response(self, frequencies: Any) -> Array:
@@ -147,27 +65,19 @@ class Linear:
 
     def to_control(self) -> Any:
         """The system for python-control, with names; dots in them become underscores, which that package asks for."""
-        from clutchwork.linear.handover import to_control
-
         return to_control(self)
 
     def to_scipy(self) -> Any:
         """The system as a `scipy.signal.StateSpace`."""
-        from clutchwork.linear.handover import to_scipy
-
         return to_scipy(self)
 
     @explained("plot")
     def plot(self, path: str | Path | None = None) -> Figure:
         """Picture of the eigenvalues and of the shapes of the modes; written to `path` when given. Needs matplotlib."""
-        from clutchwork.linear.picture import picture
-
         return picture(self, path)
 
     def to_dict(self) -> dict[str, Any]:
         """All of it as plain data, as `clutchwork linearise --json` prints it."""
-        from clutchwork.linear.handover import to_dict
-
         return to_dict(self)
 
     def __str__(self) -> str:

@@ -59,7 +59,7 @@ def add_command(subparsers: Any) -> None:
 def page_command(asked: argparse.Namespace) -> int:
     """Write the page; the exit code."""
     from clutchwork.declare.quantity import in_si
-    from clutchwork.face.driveline import Driveline
+    from clutchwork.driveline.driveline import Driveline
     from clutchwork.page.data import PageRequest
     from clutchwork.page.page import page
     from clutchwork.run.settings import merged

@@ -6,6 +6,7 @@ from collections.abc import Iterable, Iterator, Mapping
 from typing import TYPE_CHECKING, Any
 
 from clutchwork.base.errors import ModelError
+from clutchwork.signals.table import Table
 
 if TYPE_CHECKING:
     from clutchwork.assembly.system import System
@@ -17,8 +18,6 @@ Path = tuple[str | int, ...]
 
 def paths(system: System, dragged: list[Dragged], turned: list[Slider]) -> dict[str, list[list[str | int]]]:
     """Places in the plain data of the model by name; nothing where they are not found."""
-    from clutchwork.signals.table import Table
-
     found = dict[str, list[list[str | int]]]()
     for one in dragged:
         beside = [(x, y + 1.0) for x, y in one.points]

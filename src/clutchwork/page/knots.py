@@ -19,6 +19,7 @@ from clutchwork.declare.node import Signal
 from clutchwork.declare.schema import Role
 from clutchwork.model.changes import SIGNALS, all_names, field_of, named, target, unit_of
 from clutchwork.results.selection import meant
+from clutchwork.run.control import controllers
 from clutchwork.signals.table import Table
 
 if TYPE_CHECKING:
@@ -170,8 +171,6 @@ def roomy(system: System, dragged: Sequence[Dragged]) -> tuple[System, dict[int,
 
 def refuse_controllers(system: System) -> None:
     """A page has no Python: signals that a function gives cannot be in it."""
-    from clutchwork.run.control import controllers
-
     names = [one.name for one in controllers(system.inputs)]
     if names:
         fault, remedy = "is given by a Python function, which no page can call", "give it a table"

@@ -17,7 +17,7 @@ from clutchwork.page.html import html
 if TYPE_CHECKING:
     from clutchwork.assembly.system import System
     from clutchwork.declare.options import Options
-    from clutchwork.results.trajectory import Trajectory
+    from clutchwork.run.trajectory import Trajectory
 
 ENDINGS = (".html", ".htm")
 

@@ -9,9 +9,10 @@ from clutchwork.base.extras import need
 from clutchwork.page.page import quiet_data, refuse, wanted_of
 from clutchwork.page.static import CORE, FOLDER, STYLE, WIDGET, built
 from clutchwork.page.traits import knots_of, values_of
+from clutchwork.signals.table import Table
 
 if TYPE_CHECKING:
-    from clutchwork.results.trajectory import Trajectory
+    from clutchwork.run.trajectory import Trajectory
 
 
 def widget_of(run: Trajectory, drag: Any, sliders: Any, show: Any) -> Any:
@@ -26,7 +27,6 @@ def _made(run: Trajectory, data: dict[str, Any]) -> Any:
     turned, tables = data["sliders"], data["tables"]
     knots = {one["name"]: one["points"] for one in tables}
     values = {one["name"]: one["start"] for one in turned}
-    from clutchwork.signals.table import Table
 
     class DrivelineWidget(anywidget.AnyWidget):  # type: ignore[misc, name-defined]
         """A driveline that is run in the notebook: `knots` and `values` are what its reader changed."""

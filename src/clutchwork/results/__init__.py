@@ -1,1 +1,1 @@
-"""What a run computed: signals, events, energies, tables and pictures."""
+"""What a run computed: signals, events, energies and tables."""

@@ -19,6 +19,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from clutchwork.assembly.wiring import Branch, Wiring
+from clutchwork.base import html
 from clutchwork.base.classes import dataclass
 from clutchwork.base.extras import need
 from clutchwork.base.plural import columns
@@ -98,8 +99,6 @@ class EnergyBalance:
 
     def _repr_html_(self) -> str:
         """A table for a notebook."""
-        from clutchwork.base import html
-
         return html.table(("energy", "J"), self._lines(), right={1}, most=10 * html.MOST_ROWS)
 
     def _lines(self) -> list[tuple[str, str]]:

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any, overload
 
 import numpy as np
 
+from clutchwork.base import html
 from clutchwork.base.classes import dataclass
 from clutchwork.base.errors import UnknownName, near
 from clutchwork.base.extras import need
@@ -89,8 +90,6 @@ class GearTable(Sequence[GearStretch]):
 
     def _repr_html_(self) -> str:
         """A table for a notebook."""
-        from clutchwork.base import html
-
         return html.table(("from, s", "to, s", f"gear of {self.gearbox}", "closed"), self._cells(), right={0, 1})
 
     def to_pandas(self) -> Any:

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
+from clutchwork.base import html
 from clutchwork.base.classes import dataclass
 from clutchwork.base.errors import ClutchworkError, UnknownName, near
 from clutchwork.base.extras import need
@@ -109,8 +110,6 @@ class Gradient:
         return [*head, *more], [[*line, *([""] if more else [])] for line in [values, *lines]]
 
     def _repr_html_(self) -> str:
-        from clutchwork.base import html
-
         head, lines = self._table()
         return html.page(
             html.table(head, lines, right=set(range(2, len(head)))), *(html.paragraph(said) for said in self._said())

@@ -5,33 +5,55 @@ from __future__ import annotations
 from collections import defaultdict
 from collections.abc import Callable, Iterator, Mapping
 from functools import cache
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, TypeVar
 
+from clutchwork.base import html
 from clutchwork.base.classes import dataclass
+from clutchwork.base.errors import UnknownName, near
 from clutchwork.base.extras import need
-from clutchwork.base.paths import fitting
 from clutchwork.base.plural import columns
-from clutchwork.declare.calls import explained, explained_methods
+from clutchwork.base.quote import quote
+from clutchwork.declare.calls import explained_methods
 from clutchwork.declare.node import Component, Domain, Work
 from clutchwork.results.flows import Flows
-from clutchwork.results.loss import Loss as Loss
 from clutchwork.results.ratios import input_and_output
 
 if TYPE_CHECKING:
-    from pathlib import Path
-
     from clutchwork.assembly.wiring import Wiring
     from clutchwork.results.energy import EnergyBalance
-    from clutchwork.results.plot.canvas import Picture
     from clutchwork.results.recorded import Recorded
 
 # below this part of the turnover a line of zeros is left out of a printed table
 NOTHING = 1e-9
 
+T = TypeVar("T", bound="LossTable")
+
+
+@dataclass(frozen=True)
+class Loss:
+    """Energies of one element or shaft over a window [J], or mean powers [W].
+
+    `taken = given + stored + heat`, but for what the integration missed.
+    """
+
+    element: str
+    kind: str  # such as "disk_clutch"; "shaft" and "mass" for those
+    taken: float  # what went in, from shafts and from outside
+    given: float  # what came out, to shafts and to outside
+    stored: float  # change of kinetic and elastic energy
+    heat: float
+    share: float  # of all heat
+    outside: float  # part of what went in that came from outside, negative: that went out there
+
+    @property
+    def efficiency(self) -> float:
+        """What came out over what went in; not a number where nothing went in."""
+        return self.given / self.taken if self.taken else float("nan")
+
 
 @explained_methods("run.losses")
 @dataclass(frozen=True)
-class Losses:
+class LossTable:
     """Where the energy of a window of a run went, element by element; print it to read it.
 
     With `power` all are mean powers in W in place of energies in J.
@@ -65,23 +87,8 @@ class Losses:
         came = sum(max(0.0, line.outside) for line in self.lines) - sum(min(0.0, line.stored) for line in self.lines)
         return 1.0 - self.heat / came if came else float("nan")
 
-    @explained("losses.sankey", path="'sankey.svg'")
-    def sankey(self, path: str | Path | None = None) -> Picture:
-        """The table as a Sankey picture: sources left, load right, heat down, what is stored up. Needs matplotlib.
-
-        Parameters: path, where it is written: png, svg or pdf by its ending.
-        """
-        from clutchwork.results.plot.chosen import PICTURES
-        from clutchwork.results.plot.sankey import draw
-
-        file = fitting("losses.sankey", path, "sankey.svg", PICTURES) if path is not None else None
-        return draw(self, file)
-
     def __getitem__(self, element: str) -> Loss:
         """The line of an element or shaft; UnknownName, a KeyError, with near ones."""
-        from clutchwork.base.errors import UnknownName, near
-        from clutchwork.base.quote import quote
-
         known = {line.element: line for line in self.lines}
         if element not in known:
             raise UnknownName(f"no element or shaft {quote(element)}{near(element, known)}")
@@ -125,14 +132,7 @@ class Losses:
 
     def _repr_html_(self) -> str:
         """A table for a notebook."""
-        from clutchwork.base import html
-
         return html.table(self._head(), self._cells(), right={2, 3, 4, 5, 6}, most=10 * html.MOST_ROWS)
-
-    def _repr_mimebundle_(self, **_: Any) -> dict[str, Any]:
-        from clutchwork.base.rich import bundle
-
-        return bundle(self, "losses")
 
     def _head(self) -> tuple[str, ...]:
         window = f"{self.begin:g} to {self.end:g} s"
@@ -149,8 +149,8 @@ class Losses:
         yield "from and to outside", "", *(f"{x:z.3f}" for x in (taken, given, stored, heat)), ""
 
 
-def losses(run: Recorded, found: Flows, power: bool) -> Losses:
-    """The table of a window of a run."""
+def losses(table: type[T], run: Recorded, found: Flows, power: bool) -> T:
+    """The table of a window of a run, as a class of tables makes it."""
     scale = 1.0 / (found.end - found.begin) if power else 1.0
     wiring, owner = run.wiring, owners(run)
     nodes = [node.name for node in wiring.nodes]
@@ -175,7 +175,7 @@ def losses(run: Recorded, found: Flows, power: bool) -> Losses:
         lines.append(Loss(name, kind, taken, given, stored[name], heat[name], share, outside[name]))
     made = tuple((element, shaft, energy) for (element, shaft), energy in joints.items())
     shafts = input_and_output(wiring) or _drive_and_vehicle(wiring)
-    return Losses(found.begin, found.end, tuple(lines), made, found.balance, power, run.system.name, shafts)
+    return table(found.begin, found.end, tuple(lines), made, found.balance, power, run.system.name, shafts)
 
 
 def _drive_and_vehicle(wiring: Wiring) -> tuple[str, str] | None:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 from collections.abc import Mapping
 from dataclasses import field
 from numbers import Real
@@ -13,7 +14,9 @@ from numpy.typing import NDArray
 from clutchwork.base.classes import dataclass
 from clutchwork.base.errors import ClutchworkError, UseError
 from clutchwork.base.memoize import memoize
+from clutchwork.base.paths import fitting, path_of
 from clutchwork.base.quote import quote, shortened
+from clutchwork.base.regular import reason
 from clutchwork.declare.calls import explained, explained_methods
 from clutchwork.declare.quantity import QuantityError, has_unit, in_si
 from clutchwork.results.external_settings import Held, held_of, plain_held
@@ -68,15 +71,13 @@ class State:
     @explained("state.save", path="'run.cwstate'")
     def save(self, path: str | Path) -> None:
         """Write it to one file, whatever its ending; nothing in it is code."""
+        # zip files, for those that are written
         from clutchwork.base import archive
-        from clutchwork.base.paths import fitting
 
         archive.write(fitting("state.save", path, "run.cwstate"), self.parts())
 
     def parts(self) -> dict[str, bytes]:
         """What a file holds of it, by the names in PARTS."""
-        import json
-
         head = {"format": FORMAT, "time": self.time, "model": self.model, "fingerprint": self.fingerprint}
         head |= {"held": plain_held(self.held), "changed": dict(self.changed)}
         return {"head": json.dumps(head).encode(), "core": self.core, "row": self.row, "left": self.left}
@@ -90,9 +91,8 @@ class State:
     @explained("cw.State.load", path="'run.cwstate'")
     def load(cls, path: str | Path) -> State:
         """Read a file of `save`; StateError for any other. Whether it fits a model is seen where it is used."""
+        # as above
         from clutchwork.base import archive
-        from clutchwork.base.paths import path_of
-        from clutchwork.base.regular import reason
 
         path_of("cw.State.load", path, "run.cwstate")
         try:
@@ -147,8 +147,6 @@ def instant(at: object, begin: float, reached: float) -> float:
 
 def _read_head(data: bytes) -> dict[str, Any]:
     """The fields beside the bytes; ValueError where they are not what they must be."""
-    import json
-
     head = json.loads(data)
     if not isinstance(head, dict) or head.get("format") != FORMAT:
         raise ValueError("it is of another version")

@@ -13,13 +13,13 @@ from clutchwork.base.classes import dataclass
 from clutchwork.base.errors import ModelWarning
 from clutchwork.declare.node import Domain, Law, Node, SignalLike
 from clutchwork.declare.options import Options
+from clutchwork.driveline.driveline import Driveline
 from clutchwork.elements.bearing_friction import BearingFriction
 from clutchwork.elements.prescribed_speed import PrescribedSpeed
 from clutchwork.elements.torque import Torque
-from clutchwork.face.driveline import Driveline
-from clutchwork.results.trajectory import Trajectory
 from clutchwork.rig.presets import Preset
 from clutchwork.run.failure import StoppedEarly
+from clutchwork.run.trajectory import Trajectory
 
 Array = NDArray[np.float64]
 

@@ -12,14 +12,14 @@ from clutchwork.base.errors import near
 from clutchwork.base.paths import fitting
 from clutchwork.declare.node import Law
 from clutchwork.declare.options import Options
-from clutchwork.results.plot.chosen import PICTURES
-from clutchwork.results.plot.figure import figure_of
-from clutchwork.results.trajectory import Trajectory
+from clutchwork.plot.chosen import PICTURES
+from clutchwork.plot.figure import figure_of
 from clutchwork.rig.bench import ACCURATE, Bench
 from clutchwork.rig.chosen import Laws, chosen
 from clutchwork.rig.presets import Preset, preset_of
 from clutchwork.rig.table import Cell, Table, TableColumn
 from clutchwork.rig.trial import NOT_REACHED, Runs, Trial, found
+from clutchwork.run.trajectory import Trajectory
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure

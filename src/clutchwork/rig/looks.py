@@ -6,7 +6,7 @@ from collections.abc import Iterable
 from typing import TYPE_CHECKING, Any
 
 from clutchwork.declare.schema import REGISTRY, Role
-from clutchwork.results.plot.style import COLOURS, DASHES
+from clutchwork.plot.style import COLOURS, DASHES
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes

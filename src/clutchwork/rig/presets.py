@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from functools import cached_property
+from math import exp
 from typing import Any
 
 from clutchwork.base.classes import dataclass
@@ -119,8 +120,6 @@ class Preset:
 
     def curve(self, speed: float) -> float:
         """Steady friction force of the Stribeck curve at a speed [m/s] above zero [N]."""
-        from math import exp
-
         fall = exp(-((speed / self.speed) ** 2))
         return self.load * (self.kinetic + (self.static - self.kinetic) * fall + self.viscous * speed)
 

@@ -7,9 +7,9 @@ from typing import TypeVar
 
 from clutchwork.base.classes import dataclass
 from clutchwork.base.errors import near
-from clutchwork.results.trajectory import Trajectory
 from clutchwork.rig.bench import Bench
 from clutchwork.rig.presets import Preset
+from clutchwork.run.trajectory import Trajectory
 
 # cases of one law by name
 Runs = Mapping[str, Trajectory]

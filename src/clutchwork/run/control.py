@@ -8,7 +8,7 @@ from dataclasses import field
 from typing import TYPE_CHECKING, Any
 
 from clutchwork.base.classes import dataclass
-from clutchwork.results.trajectory import SimulationError
+from clutchwork.run.trajectory import SimulationError
 
 if TYPE_CHECKING:
     import numpy as np

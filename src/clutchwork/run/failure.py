@@ -13,7 +13,7 @@ from clutchwork.base.errors import caller
 from clutchwork.declare.layout import STATUS
 from clutchwork.declare.schema import Role, specs
 from clutchwork.model.parts import is_stop
-from clutchwork.results.trajectory import Trajectory
+from clutchwork.run.trajectory import Trajectory
 
 if TYPE_CHECKING:
     from clutchwork.assembly.system import System

@@ -10,13 +10,12 @@ from numpy.typing import NDArray
 from clutchwork.base.errors import OptionError
 from clutchwork.base.quote import quote
 from clutchwork.declare.options import Options, instants
+from clutchwork.results.time_grid import uniform
 
 
 def output_grid(options: Options, t_end: float) -> NDArray[np.float64] | None:
     """The wanted output instants [s], or None when the solver's steps decide."""
     if options.dt is not None:
-        from clutchwork.results.time_grid import uniform
-
         return uniform(options.dt, options.t_start, t_end)
     return None if options.times is None else _given(options.times, options.t_start, t_end)
 

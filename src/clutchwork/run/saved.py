@@ -25,15 +25,15 @@ from clutchwork.declare.calls import explained
 from clutchwork.declare.layout import MODES, STATUSES
 from clutchwork.declare.options import Options
 from clutchwork.declare.wording import say
+from clutchwork.exchange.content import program
 from clutchwork.results.channels import channels
 from clutchwork.results.events import Event, Events
-from clutchwork.results.exchange.content import program
-from clutchwork.results.exchange.saved import FORMAT, MOST_BYTES, RUN_PARTS, RunFormatError
 from clutchwork.results.state import State
-from clutchwork.results.trajectory import Trajectory
 from clutchwork.run.control import Control
 from clutchwork.run.input_schedule import Schedule, Tape
+from clutchwork.run.save import FORMAT, MOST_BYTES, RUN_PARTS, RunFormatError
 from clutchwork.run.simulation import Job
+from clutchwork.run.trajectory import Trajectory
 
 Array = NDArray[np.float64]
 
@@ -117,7 +117,10 @@ def _made(about: Mapping[str, Any], parts: archive.ArchiveParts, path: str | Pat
         message=str(about["message"]),
         statistics=dict(about["statistics"]),
         repeat=NoRepeat(controllers) if controllers else job.again,
+        lacks=controllers,
         capture=NoRepeat(controllers) if controllers else job.state,
+        start=start,
+        course=job.course,
     )
 
 

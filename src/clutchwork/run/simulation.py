@@ -22,12 +22,12 @@ from clutchwork.declare.calls import explained
 from clutchwork.declare.layout import DONE, INTERRUPTED, NOT_FINITE, STATUSES
 from clutchwork.declare.options import Options, instants
 from clutchwork.results.events import from_rows
-from clutchwork.results.trajectory import SimulationError, Trajectory
 from clutchwork.run.begin import advance, begun, reach, row_of, state_of
 from clutchwork.run.control import Control, controllers
 from clutchwork.run.jumps import jump_times
 from clutchwork.run.record import Progress, Recording, Told, record
 from clutchwork.run.settings import merged, refuse_endless
+from clutchwork.run.trajectory import SimulationError, Trajectory
 
 if TYPE_CHECKING:
     from clutchwork.declare.node import Number
@@ -320,6 +320,9 @@ def _named(job: Job, recording: Recording, seconds: float) -> Trajectory:
         status=STATUSES[status],
         message=message,
         repeat=job.again,
+        lacks=(),
         capture=job.state,
+        start=job.start,
+        course=job.course,
         statistics={**recording.counts(), "core_seconds": recording.core_seconds, "seconds": seconds},
     )

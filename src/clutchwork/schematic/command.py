@@ -14,7 +14,7 @@ from clutchwork.declare.wording import words_of_files
 
 if TYPE_CHECKING:
     from clutchwork.model.model import Model
-    from clutchwork.results.trajectory import Trajectory
+    from clutchwork.run.trajectory import Trajectory
 
 EXAMPLES = (
     ("clutchwork draw model.toml", "its schematic, model.svg"),

@@ -15,7 +15,7 @@ from clutchwork.base.paths import fitting
 from clutchwork.base.quote import quote
 from clutchwork.base.writing import put
 from clutchwork.declare.calls import explained_methods
-from clutchwork.results.plot.style import RC
+from clutchwork.plot.style import RC
 from clutchwork.schematic.look import GREY, LOCKED, NAME, OPEN, SLIPPING, VALUE
 from clutchwork.schematic.pen import Mark, Rect, Stroke, SymbolPen, Text, width_of
 from clutchwork.schematic.sheet import DOT, Sheet

@@ -10,7 +10,7 @@ from clutchwork.shifts.controller import ShiftController
 from clutchwork.shifts.record import Measured
 
 if TYPE_CHECKING:
-    from clutchwork.results.trajectory import Trajectory
+    from clutchwork.run.trajectory import Trajectory
     from clutchwork.stepping.simulator import Simulator
 
 # what else is set at a time [s]: values by signal

@@ -18,9 +18,9 @@ from clutchwork.shifts.record import NEUTRAL as NEUTRAL_GEAR
 from clutchwork.stepping.simulator import Simulator
 
 if TYPE_CHECKING:
-    from clutchwork.face.driveline import Driveline
+    from clutchwork.driveline.driveline import Driveline
     from clutchwork.gearbox.gearbox import Gearbox
-    from clutchwork.results.trajectory import Trajectory
+    from clutchwork.run.trajectory import Trajectory
 
 STUCK, MISSING = "stuck closed", "missing"
 NOT_SIMULATED = "not simulated"

@@ -17,7 +17,7 @@ from clutchwork.base.writing import replaced
 
 if TYPE_CHECKING:
     from clutchwork.gearbox.gearbox import Gearbox
-    from clutchwork.results.trajectory import Trajectory
+    from clutchwork.run.trajectory import Trajectory
     from clutchwork.shifts.metrics import ShiftQuality
 
 HEADS = (

@@ -19,9 +19,9 @@ from clutchwork.shifts.settings import ShiftSettings
 from clutchwork.stepping.simulator import Simulator
 
 if TYPE_CHECKING:
-    from clutchwork.face.driveline import Driveline
+    from clutchwork.driveline.driveline import Driveline
     from clutchwork.gearbox.gearbox import Gearbox
-    from clutchwork.results.trajectory import Trajectory
+    from clutchwork.run.trajectory import Trajectory
 
 
 @dataclass(frozen=True)

@@ -9,6 +9,7 @@ from typing import Any
 
 from clutchwork.base.errors import FileError
 from clutchwork.declare import Role, Segment, Signal, component, param, text
+from clutchwork.declare.quantity import QuantityError
 from clutchwork.signals.table import pieces
 
 
@@ -64,8 +65,6 @@ class Column(Signal):
 
     def unit_problems(self, units: tuple[str, ...]) -> list[tuple[str, str, str]]:
         """A head whose unit fits none of those that the driven quantity may have."""
-        from clutchwork.declare.quantity import QuantityError
-
         try:
             _ = self._read.head.scale(units)
         except FileError:

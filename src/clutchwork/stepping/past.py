@@ -21,7 +21,7 @@ if TYPE_CHECKING:
     from clutchwork.assembly.system import System
     from clutchwork.declare.options import Options
     from clutchwork.results.state import State
-    from clutchwork.results.trajectory import Trajectory
+    from clutchwork.run.trajectory import Trajectory
 
 Array = NDArray[np.float64]
 Outsides = tuple[Held, Mapping[str, Any]]

@@ -19,13 +19,13 @@ from clutchwork.declare.layout import DONE, EVENTS_FULL
 from clutchwork.declare.options import Options
 from clutchwork.declare.quantity import QuantityError, has_unit, in_si
 from clutchwork.results.state import State, StateError
-from clutchwork.results.trajectory import SimulationError
 from clutchwork.run.begin import begun, choose, put, seen, state_of
 from clutchwork.run.control import Controller, controllers, instants, is_due
 from clutchwork.run.failure import warn_of_faults
 from clutchwork.run.readings import Readings
 from clutchwork.run.settings import without_end
 from clutchwork.run.simulation import Assembles, begin_of, message_of, model_of
+from clutchwork.run.trajectory import SimulationError
 from clutchwork.stepping.outside import Outside
 from clutchwork.stepping.past import Past
 from clutchwork.stepping.readout import Readout
@@ -33,8 +33,8 @@ from clutchwork.stepping.readout import Readout
 if TYPE_CHECKING:
     from clutchwork.declare.option_fields import OptionFields
     from clutchwork.results.events import Events
-    from clutchwork.results.trajectory import Trajectory
     from clutchwork.run.input_schedule import Act, Numbers
+    from clutchwork.run.trajectory import Trajectory
 
 Array = NDArray[np.float64]
 # two instants that are closer are one, as a share of them

@@ -16,6 +16,7 @@ from clutchwork.base.extras import need
 from clutchwork.base.plural import columns
 from clutchwork.base.quote import quote
 from clutchwork.declare.calls import explained, explained_methods
+from clutchwork.studies.picture import indices
 from clutchwork.studies.points import Saltelli
 from clutchwork.studies.result import Study
 from clutchwork.sweeps.result import Sweep
@@ -95,9 +96,8 @@ class SobolIndices:
     @explained("sobol_indices.plot", path="'indices.png'")
     def plot(self, path: str | Path | None = None) -> Figure:
         """Bars with their intervals, written to `path` when given. Needs matplotlib."""
-        from clutchwork.studies.picture import indices
-
-        return indices(self, path)
+        totals, firsts = (self.total, self.total_interval), (self.first, self.first_interval)
+        return indices(self.output, self.names, totals, firsts, path)
 
 
 @explained("cw.sobol_indices", found="study", output="'lock(c1)'")

@@ -15,9 +15,10 @@ FILE = ".lock"
 def locked(folder: Path) -> Iterator[None]:
     """Hold the lock of a folder; StudyError where another process does."""
     try:
+        # not on Windows
         import fcntl
     except ImportError:
-        # there is none of this kind; parts are whole all the same
+        # parts are whole all the same
         yield
         return
     with (folder / FILE).open("w") as file:

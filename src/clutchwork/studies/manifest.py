@@ -10,6 +10,7 @@ from importlib.metadata import PackageNotFoundError, version
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from clutchwork.assembly.system import System, SystemFormatError
 from clutchwork.base.classes import dataclass
 from clutchwork.base.errors import ClutchworkError
 from clutchwork.base.quote import shortened
@@ -128,8 +129,6 @@ def refuse_other(folder: Path, was: Manifest, asked: Mapping[str, Any], model: M
 def _model_changes(folder: Path, was: Manifest, asked: Mapping[str, Any], model: Mapping[str, Any]) -> list[str]:
     if was.asked["model"] == asked["model"]:
         return []
-    from clutchwork.assembly.system import System, SystemFormatError
-
     try:
         before: Mapping[str, Any] = System.load(folder / MODEL).model
     except (SystemFormatError, ValueError):

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections import Counter
+from collections.abc import Iterator
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -10,24 +11,28 @@ import numpy as np
 from numpy.typing import NDArray
 
 from clutchwork.assembly.system import System, SystemFormatError
+from clutchwork.base import html
 from clutchwork.base.classes import dataclass
 from clutchwork.base.errors import UnknownName, UseError, near
 from clutchwork.base.extras import need
 from clutchwork.base.paths import path_of
+from clutchwork.base.plural import columns
 from clutchwork.base.quote import quote
 from clutchwork.declare.calls import explained, explained_methods
 from clutchwork.declare.options import Options
 from clutchwork.results.selection import chosen
 from clutchwork.studies.manifest import MODEL, Manifest, StudyError
 from clutchwork.studies.parts import Written, file_of, there
+from clutchwork.studies.picture import distributions
 from clutchwork.sweeps.single import single
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
-    from clutchwork.results.trajectory import Trajectory
+    from clutchwork.run.trajectory import Trajectory
 
 STATUS = "status"
+HEADS = ("output", "unit", "mean", "deviation", "5 %", "median", "95 %", "no value")
 
 
 @explained_methods("study")
@@ -186,20 +191,35 @@ class Study:
     # --------------------------------------------------------------------------------------------------- text, pictures
 
     def __repr__(self) -> str:
-        from clutchwork.studies.table import head
-
-        return f"<{head(self)}; {', '.join(self.names)}>"
+        return f"<{self._head()}; {', '.join(self.names)}>"
 
     def __str__(self) -> str:
         """What `print` shows: how much is there, and the distribution of each output."""
-        from clutchwork.studies.table import text
-
-        return text(self)
+        lines = list(self._lines())
+        table = columns([HEADS, *lines], right=range(2, len(HEADS))) if lines else "nothing is there yet"
+        return "\n".join([f"<{self._head()}>", str(self.folder), "", table])
 
     def _repr_html_(self) -> str:
-        from clutchwork.studies.table import page
+        table = html.table(HEADS, list(self._lines()), right=range(2, len(HEADS)))
+        return html.page(html.heading(self._head()), html.paragraph(self.folder), table)
 
-        return page(self)
+    def _head(self) -> str:
+        """How many variants there are, and how they ended."""
+        ends = ", ".join(f"{count} {name}" for name, count in self.ends.items())
+        return f"Study of {self.count} variants, {len(self)} of them there{f': {ends}' if ends else ''}"
+
+    def _lines(self) -> Iterator[tuple[str, ...]]:
+        """A line for each output of numbers."""
+        for name in self.names if len(self) else ():
+            values = self[name]
+            if values.dtype.kind != "f":
+                continue
+            known = values[np.isfinite(values)]
+            numbers = ["", "", "", "", ""]
+            if len(known):
+                low, middle, high = np.quantile(known, [0.05, 0.5, 0.95])
+                numbers = [f"{number:.6g}" for number in (known.mean(), known.std(), low, middle, high)]
+            yield name, self.units.get(name, ""), *numbers, str(len(values) - len(known))
 
     @explained("study.plot", path="'study.png'")
     def plot(self, path: str | Path | None = None, names: Any = None) -> Figure:
@@ -207,6 +227,5 @@ class Study:
 
         Parameters: names, outputs by name, or wildcards such as `*.heat`, all by default.
         """
-        from clutchwork.studies.picture import distributions
-
-        return distributions(self, chosen(names, self.names, self._unknown), path)
+        shown = {name: self[name] for name in chosen(names, self.names, self._unknown)}
+        return distributions(shown, self.units, path)

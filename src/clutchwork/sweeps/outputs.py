@@ -21,7 +21,7 @@ from clutchwork.sweeps import parts
 
 if TYPE_CHECKING:
     from clutchwork.results.events import Event
-    from clutchwork.results.trajectory import Trajectory
+    from clutchwork.run.trajectory import Trajectory
 
 Array = NDArray[Any]
 

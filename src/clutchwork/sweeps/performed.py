@@ -16,7 +16,7 @@ from clutchwork.base.shell import DONE, INTERRUPTED, STOPPED
 from clutchwork.declare.options import instants
 from clutchwork.declare.units import split
 from clutchwork.declare.wording import words_of_files
-from clutchwork.face.driveline import Driveline
+from clutchwork.driveline.driveline import Driveline
 from clutchwork.run.flags import given_options
 from clutchwork.sweeps import outputs as made
 from clutchwork.sweeps.asking import CALLS, KNOWN

@@ -24,13 +24,14 @@ from clutchwork.results.selection import chosen
 from clutchwork.run.simulation import told
 from clutchwork.sweeps.outputs import AtTimes, Computed, Integral, Output, SquaredJerk, When
 from clutchwork.sweeps.single import single
+from clutchwork.sweeps.table import page, text
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping
 
     from clutchwork.assembly.system import System
     from clutchwork.declare.options import Options
-    from clutchwork.results.trajectory import Trajectory
+    from clutchwork.run.trajectory import Trajectory
     from clutchwork.sweeps.batch import Block
     from clutchwork.sweeps.variants import Variants, Varied
 
@@ -216,14 +217,10 @@ class Sweep:
 
     def __str__(self) -> str:
         """What `print` shows: how the variants ended, and the first lines of the table."""
-        from clutchwork.sweeps.table import text
-
         return text(self)
 
     def _repr_html_(self) -> str:
         """The first lines of the table for a notebook."""
-        from clutchwork.sweeps.table import page
-
         return page(self)
 
     def without_value(self, name: str) -> int:

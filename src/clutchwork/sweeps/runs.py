@@ -20,7 +20,7 @@ from clutchwork.sweeps.result import Missing, Sweep, SweepInterrupted, Swept
 if TYPE_CHECKING:
     from collections.abc import Mapping
 
-    from clutchwork.results.trajectory import Trajectory
+    from clutchwork.run.trajectory import Trajectory
 
 Shown = Callable[[int], None]
 

@@ -13,7 +13,7 @@ if TYPE_CHECKING:
 
     from clutchwork.assembly.system import System
     from clutchwork.declare.options import Options
-    from clutchwork.results.trajectory import Trajectory
+    from clutchwork.run.trajectory import Trajectory
 
 
 def single(system: System, values: Mapping[str, Any], t_end: float, options: Options) -> Trajectory:

@@ -19,7 +19,7 @@ from clutchwork.signals.table import Table as Course
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
-    from clutchwork.results.trajectory import Trajectory
+    from clutchwork.run.trajectory import Trajectory
 
 
 @experiment

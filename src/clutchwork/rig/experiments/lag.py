@@ -20,7 +20,7 @@ from clutchwork.signals.sine import Sine
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
-    from clutchwork.results.trajectory import Trajectory
+    from clutchwork.run.trajectory import Trajectory
 
 CASES = ("slow", "fast")
 

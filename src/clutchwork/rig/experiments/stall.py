@@ -10,11 +10,11 @@ from numpy.typing import NDArray
 
 from clutchwork.base.classes import dataclass
 from clutchwork.declare.node import Domain
+from clutchwork.driveline.driveline import Driveline
 from clutchwork.elements.clutch import Clutch
 from clutchwork.elements.resisting_torque import ResistingTorque
 from clutchwork.elements.spring_damper import SpringDamper
 from clutchwork.elements.torque import Torque
-from clutchwork.face.driveline import Driveline
 from clutchwork.rig.bench import Bench
 from clutchwork.rig.experiment import Experiment, Result, experiment
 from clutchwork.rig.looks import looks, title
@@ -26,7 +26,7 @@ from clutchwork.signals.table import Table as Course
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
-    from clutchwork.results.trajectory import Trajectory
+    from clutchwork.run.trajectory import Trajectory
 
 
 @experiment

@@ -8,10 +8,10 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from clutchwork.base.classes import dataclass
+from clutchwork.driveline.driveline import Driveline
 from clutchwork.elements.bearing_friction import BearingFriction
 from clutchwork.elements.prescribed_speed import PrescribedSpeed
 from clutchwork.elements.spring import Spring
-from clutchwork.face.driveline import Driveline
 from clutchwork.rig.bench import Bench
 from clutchwork.rig.experiment import Experiment, Result, experiment
 from clutchwork.rig.looks import head, legend_below, looks, small
@@ -22,7 +22,7 @@ from clutchwork.rig.trial import NOT_REACHED, Runs, Trial
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
-    from clutchwork.results.trajectory import Trajectory
+    from clutchwork.run.trajectory import Trajectory
 
 
 @experiment

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator
 from contextlib import AbstractContextManager, contextmanager
-from importlib import import_module
 from pathlib import Path
 
 from clutchwork.base.errors import FileError
@@ -45,8 +44,11 @@ def opened(path: Path, form: str, given: str) -> Iterator[list[Series]]:
 
     Parameters: given, the path in the words of the model.
     """
-    module = import_module(f"clutchwork.signals.bases.measured.{form}_file")
-    open_: Callable[[Path], AbstractContextManager[list[Series]]] = module.opened
+    # the build imports signals and has no numpy
+    from clutchwork.signals.bases.measured import mat_file, mdf_file, netcdf_file, parquet_file
+
+    readers = {"mdf": mdf_file, "mat": mat_file, "parquet": parquet_file, "netcdf": netcdf_file}
+    open_: Callable[[Path], AbstractContextManager[list[Series]]] = readers[form].opened
     try:
         _refuse_others(path, form)
         with open_(path) as found:

@@ -1,0 +1,1 @@
+"""Driveline: build, check, run and draw a model."""
