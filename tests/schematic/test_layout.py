@@ -153,6 +153,16 @@ def test_power_flows_from_left_to_right(name: str, way: list[str]) -> None:
     assert sorted(way, key=x.__getitem__) == way
 
 
+def test_drives_are_on_the_left_and_brakes_on_the_right() -> None:
+    d = cw.Driveline("brake")
+    motor, rotor = d.shaft("motor shaft", inertia=1.0), d.shaft("rotor", inertia=1.0)
+    d.add(cw.SpringDamper("coupling", base=motor, follower=rotor, stiffness=1e4, damping=1.0))
+    d.add(cw.EddyCurrentBrake("brake", shaft=rotor, nominal_torque=50.0, nominal_speed=20.0))
+    d.add(cw.SpeedTorque("motor", shaft=motor, torque=[(0.0, 40.0), (100.0, -10.0)]))
+    x = {piece.name: _middle(piece) for piece in d.draw().sheet.pieces}
+    assert x["motor"] < x["coupling"] < x["brake"]
+
+
 @pytest.mark.parametrize(("name", "most"), [
     # a chain needs none; the graph of the gearbox was drawn by hand with none as well, its sets keep the ring on top
     ("launch", 0), ("engine_clutch_vehicle", 0), ("car_launch", 0), ("six_speed", 2), ("manual", 0),

@@ -352,6 +352,10 @@ class Component(Element):
         """Where its heat goes; None: nowhere that is followed."""
         return None
 
+    def drives(self) -> bool | None:
+        """Of an element at one shaft: whether it drives it, or loads it; None: neither. Drives are drawn on the left."""
+        return None
+
     def fault_warning(self) -> str:
         """What to warn of when a fault of it is triggered, such as "cannot transmit"; empty: nothing."""
         return ""

@@ -18,3 +18,7 @@ class QuadraticTorque(Component):
     nominal_torque: float = param("N m", "torque at nominal speed", units=("N",))
     nominal_speed: float = param("rad/s", "speed of the nominal torque", above=0.0, units=("m/s",))
     same_direction: bool = flag("whether it acts in the same direction at all speeds", default=False)
+
+    def drives(self) -> bool:
+        """With a positive torque."""
+        return self.nominal_torque > 0.0
