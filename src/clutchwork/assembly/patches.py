@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 from clutchwork.assembly.inputs import plain_signal
 from clutchwork.declare.node import Component, HeatFlow, Node, Rate, ThermalNode, is_reference
 from clutchwork.declare.schema import Role, inputs, specs
+from clutchwork.elements.bases.meshing import Meshing
 from clutchwork.model.parts import is_open, is_stop, role
 from clutchwork.model.pools import Pools
 from clutchwork.signals.bases import waveform
@@ -95,6 +96,8 @@ def patches(where: Numbered, old: Any, new: Any) -> list[Patch]:
     if "ratio" in type(old).hooks and old.start_ratio() != new.start_ratio():
         raise Unpatched
     if type(old).ways and old.directions() != new.directions():
+        raise Unpatched
+    if isinstance(old, Meshing) and old.rows() != new.rows():
         raise Unpatched
     if is_stop(old) and (old.initial_states() != new.initial_states() or is_open(old)):
         # its position is the state of an element of its own, and may follow from what moves its mass
