@@ -353,7 +353,7 @@ class Component(Element):
         return None
 
     def drives(self) -> bool | None:
-        """Of an element at one shaft: whether it drives it, or loads it; None: neither. Drives are drawn on the left."""
+        """Of an element at one shaft: whether it drives it, or loads it; None: neither. Pictures have drives left."""
         return None
 
     def fault_warning(self) -> str:
