@@ -371,7 +371,8 @@ def component(
         _check_work(cls)
         frozen.kind, frozen.role, frozen.states, frozen.hooks, frozen.ways = kind, role, states, hooks, ways
         REGISTRY[role].add(kind, frozen)
-        PLAIN.add(frozen)
+        # a signal may have values with units, whose meaning depends on what it drives
+        PLAIN.update(() if role is Role.SIGNAL else (frozen,))
         schema_hash.cache_clear()
         return cls
 
