@@ -13,9 +13,9 @@ from clutchwork.schematic.diagram import diagram
 from clutchwork.schematic.moment import Snapshot
 from clutchwork.schematic.picture import Schematic
 from clutchwork.schematic.sheet import sheet
+from reference.msl.elements import missing
+from reference.msl.model import translate
 from support import cases, random_drivelines, random_large, schematics, six_speed
-from support.msl.elements import missing
-from support.msl.model import translate
 
 ROOT = Path(__file__).resolve().parents[2]
 EXAMPLES = sorted((ROOT / "examples").glob("*/model.toml"))
