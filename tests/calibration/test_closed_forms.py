@@ -85,19 +85,3 @@ def test_the_front_is_that_of_the_closed_form():
     front = found.front("lock(c1)", [0.8, 1.0, "1.25 s"])
     assert front.goals == pytest.approx(SPEED * BOTH / np.array([0.8, 1.0, 1.25]), rel=CLOSE)
     assert front.slopes == pytest.approx(-SPEED * BOTH / np.array([0.8, 1.0, 1.25]) ** 2, rel=1e-5)
-
-
-@pytest.mark.parametrize("solver", ["slsqp", "trust-constr"])
-def test_solvers_agree(solver):
-    found = least_torque(1.0, solver=solver)
-    assert found.goal[1] == pytest.approx(SPEED * BOTH, rel=1e-5)
-
-
-def test_ipopt_agrees_or_says_what_it_needs():
-    try:
-        import cyipopt  # noqa: F401
-    except ImportError:
-        with pytest.raises(ImportError, match=r"solver='ipopt' needs cyipopt: pip install 'clutchwork\[ipopt\]'"):
-            least_torque(1.0, solver="ipopt")
-    else:
-        assert least_torque(1.0, solver="ipopt").goal[1] == pytest.approx(SPEED * BOTH, rel=1e-5)

@@ -175,6 +175,13 @@ def compared(driveline: cw.Driveline, changes: dict[str, Any]) -> str:
     return f"{changes}: {rest}{' and the old one changed' if touched else ''}" if rest or touched else ""
 
 
+@pytest.mark.parametrize(("kind", "changes"), [
+    ("mesh", {"x.ratio": 3.1}), ("rack_mesh", {"x.radius": 0.4}), ("limited_slip", {"x.preload": 3.0}),
+])  # fmt: skip
+def test_the_row_of_a_contact_in_a_mesh(kind, changes):
+    assert compared(samples.driveline(REGISTRY[Role.CONTACT][kind]), changes) == ""
+
+
 @pytest.mark.parametrize("cls", samples.declared(*samples.ELEMENT_ROLES), ids=lambda cls: cls.kind)
 def test_every_value_of_every_element(cls):
     driveline = samples.driveline(cls)

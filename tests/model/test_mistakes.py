@@ -261,7 +261,7 @@ def test_a_missing_gear_does_not_blame_the_shafts_at_it(tmp_path):
     text += '[[element]]\nname = "g"\ntype = "gear"\ninput = "x"\noutput = "load"\n'
     text += '[[element]]\nname = "h"\ntype = "gear"\ninput = "x"\noutput = "y"\nratio = 2.0\n'
     messages = _mistakes(tmp_path, text)
-    assert messages == ['element "g" (gear): ratio is missing; give `ratio`, or both `teeth_input` and `teeth_output`']
+    assert messages == ['element "g" (gear): ratio is missing; give `ratio`, or `teeth_input` and `teeth_output`']
 
 
 # --- the same in Python ---

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import pickle
 from collections.abc import Callable, Iterator
 from typing import Any
 
@@ -12,6 +13,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 import clutchwork as cw
+from clutchwork.base.classes import PLAIN
 from clutchwork.declare.node import Component, Node
 from clutchwork.declare.schema import Role, Spec, specs
 from clutchwork.declare.to_si import PARTNERS
@@ -475,6 +477,19 @@ def test_changes_and_sweeps() -> None:
             assert found[output].tobytes() == wanted[output].tobytes()
         with pytest.raises(cw.ModelError, match="has a unit that does not fit"):
             cw.sweep(d, 1.0, vary={name: ["1 kg2"]}, outputs="a.speed")
+
+
+def test_a_signal_says_itself_that_it_has_units() -> None:
+    # not the process, so that another process knows it and signals without units are none the slower
+    plain, known = cw.Ramp(height=2e5, duration=1.0), set(PLAIN)
+    united = pickle.loads(pickle.dumps(cw.Ramp(height="2 bar", duration=1.0)))
+    assert (plain.has_units, united.has_units, PLAIN) == (False, True, known)
+    d = cw.Driveline("pickled")
+    made = cw.Brake(
+        "b", shaft=d.shaft("a", inertia=1.0), friction=cw.Coulomb(static=0.1, kinetic=0.1), gain=1e-3, pressure=united
+    )
+    assert made.pressure == plain
+    assert not made.pressure.has_units
 
 
 def test_other_words_of_the_same_unit() -> None:

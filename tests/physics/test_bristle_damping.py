@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 import clutchwork as cw
-from support.friction import sets
+from reference.friction import sets
 from support.runs import TIGHT
 
 MASS, LOAD, START = 2.0, 5.0, 1e-3  # kg, N, m/s

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 import clutchwork as cw
-from support import switched
+from reference import switched
 
 FINE = {"rtol": 1e-9, "atol": 1e-11}
 TOP, LOW = 150.0, -30.0  # N m: full load and motoring

@@ -9,7 +9,7 @@ import pytest
 from scipy.integrate import solve_ivp
 
 import clutchwork as cw
-from support import independent
+from reference import independent
 from support.runs import clutch, switches
 
 

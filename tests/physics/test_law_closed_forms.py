@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 import clutchwork as cw
-from support.friction.closed_forms import BAND, CURVE, FALL, KINETIC, LAWS, SPEED, STATIC, TO_REST, VISCOUS
+from reference.friction.closed_forms import BAND, CURVE, FALL, KINETIC, LAWS, SPEED, STATIC, TO_REST, VISCOUS
 from support.runs import EXACT, TIGHT
 
 MASS, LOAD, START = 2.0, 5.0, 3.0  # kg, N, m/s

@@ -12,10 +12,10 @@ from hypothesis import strategies as st
 
 import clutchwork as cw
 from clutchwork.declare.schema import Role
+from reference.friction import core, sets
+from reference.friction.histories import sweeps
 from support import samples
 from support.amount import part
-from support.friction import core, sets
-from support.friction.histories import sweeps
 
 # amplitudes [m] from deep in the elastic zone to sliding, and frequencies [Hz] on both sides of the Stribeck speed
 AMPLITUDES = st.floats(-6.0, -2.5).map(lambda x: round(10.0**x, 9))

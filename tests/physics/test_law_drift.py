@@ -9,12 +9,12 @@ import pytest
 
 import clutchwork as cw
 from clutchwork.declare.schema import REGISTRY, Role
-from support.friction import core, sets
-from support.friction.build import counterpart
-from support.friction.compare import assert_agree
-from support.friction.histories import FIRST, SECOND, Drift
-from support.friction.solve import solve
-from support.friction.systems import Pushed
+from reference.friction import core, sets
+from reference.friction.build import counterpart
+from reference.friction.compare import assert_agree
+from reference.friction.histories import FIRST, SECOND, Drift
+from reference.friction.solve import solve
+from reference.friction.systems import Pushed
 
 # what the specification asks of a creep against its figures
 FIGURE = 0.05

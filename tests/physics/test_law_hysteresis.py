@@ -8,12 +8,12 @@ import numpy as np
 import pytest
 
 import clutchwork as cw
-from support.friction import core, sets
-from support.friction.build import counterpart
-from support.friction.compare import assert_agree
-from support.friction.histories import Corners, Waves, sweeps
-from support.friction.solve import solve
-from support.friction.systems import Moved
+from reference.friction import core, sets
+from reference.friction.build import counterpart
+from reference.friction.compare import assert_agree
+from reference.friction.histories import Corners, Waves, sweeps
+from reference.friction.solve import solve
+from reference.friction.systems import Moved
 
 # displacement [m] of 3e-5 stays elastic, 2e-3 slides with 0.006 to 0.04 m/s: across the Stribeck speed of 0.01
 SWINGS = {"elastic": 3e-5, "sliding": 2e-3}

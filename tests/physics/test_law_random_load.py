@@ -8,13 +8,13 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 import clutchwork as cw
+from reference.friction import core, sets
+from reference.friction.build import counterpart
+from reference.friction.compare import assert_agree
+from reference.friction.histories import Corners
+from reference.friction.solve import solve
+from reference.friction.systems import Pushed
 from support.amount import part
-from support.friction import core, sets
-from support.friction.build import counterpart
-from support.friction.compare import assert_agree
-from support.friction.histories import Corners
-from support.friction.solve import solve
-from support.friction.systems import Pushed
 
 # friction holds 1 N: forces of both sides, of rest and of sliding
 FORCES = st.lists(st.floats(-1.6, 1.6).map(lambda f: round(f, 3)), min_size=3, max_size=5)

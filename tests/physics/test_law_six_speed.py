@@ -11,7 +11,7 @@ from typing import Any
 import pytest
 
 import clutchwork as cw
-from support.friction import sets
+from reference.friction import sets
 
 EXAMPLE = Path(__file__).resolve().parents[2] / "examples/six_speed"
 # overall ratio w1/w8 of the fourth gear, from the teeth

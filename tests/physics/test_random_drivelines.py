@@ -14,7 +14,8 @@ import numpy as np
 import pytest
 
 import clutchwork as cw
-from support import independent, random_drivelines
+from reference import independent
+from support import random_drivelines
 from support.amount import part
 from support.runs import switches
 

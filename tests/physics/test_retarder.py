@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 import clutchwork as cw
-from support import switched
+from reference import switched
 from support.amount import amount
 from support.sweep import simulate, stopped, sweep
 

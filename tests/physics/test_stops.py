@@ -10,7 +10,7 @@ import pytest
 from scipy.integrate import solve_ivp
 
 import clutchwork as cw
-from support.msl.model import translate
+from reference.msl.model import translate
 from support.runs import EXACT, TIGHT, at_end
 
 MASS, WEIGHT, HEIGHT = 2.0, 20.0, 1.0  # kg, N, m

@@ -11,8 +11,8 @@ import pytest
 from scipy.integrate import quad
 
 import clutchwork as cw
+from reference.friction import core, sets
 from support.amount import amount
-from support.friction import core, sets
 
 RANGE = 3.0
 

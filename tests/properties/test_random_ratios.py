@@ -12,7 +12,8 @@ from typing import Any
 import numpy as np
 import pytest
 
-from support import independent, random_drivelines, varying
+from reference import independent
+from support import random_drivelines, varying
 from support.amount import part
 from support.runs import switches
 

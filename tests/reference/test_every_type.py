@@ -12,8 +12,8 @@ import pytest
 from scipy.integrate import solve_ivp
 
 import clutchwork as cw
-from support.msl.elements import ENTRIES
-from support.msl.model import translate
+from reference.msl.elements import ENTRIES
+from reference.msl.model import translate
 
 TYPES = {
     *("inertia", "mass", "rod", "fixed", "spring", "damper", "spring_damper", "relative_states"),

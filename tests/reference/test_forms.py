@@ -12,10 +12,10 @@ from scipy.integrate import solve_ivp
 
 import clutchwork as cw
 from clutchwork.signals.bases.waveform import value
-from support.msl import compare
-from support.msl.model import translate
-from support.msl.pieces import UnsupportedError, at, integral
-from support.msl.signals import first_value, pieces, signal
+from reference.msl import compare
+from reference.msl.model import translate
+from reference.msl.pieces import UnsupportedError, at, integral
+from reference.msl.signals import first_value, pieces, signal
 
 T_END = 3.0
 SINE = {"type": "sine", "amplitude": 2.0, "f": 1.5, "phase": 0.3, "offset": 0.5, "start_time": 0.4}

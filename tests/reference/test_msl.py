@@ -15,10 +15,10 @@ import pytest
 import yaml
 
 import clutchwork as cw
+from reference.msl import compare
+from reference.msl.elements import missing
+from reference.msl.model import translate
 from support import cases
-from support.msl import compare
-from support.msl.elements import missing
-from support.msl.model import translate
 
 FOLDER = cases.folder("msl")
 OWN = cases.OWN / "msl"

@@ -42,7 +42,7 @@ def thin(source: Path, target: Path) -> None:
 
 def main(source: Path) -> None:
     """All cases of a folder."""
-    from support.msl.elements import missing
+    from reference.msl.elements import missing
 
     target = HERE / "cases" / "msl"
     shutil.copyfile(source / "reference_errors.csv", target / "reference_errors.csv")

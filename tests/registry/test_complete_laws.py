@@ -14,9 +14,9 @@ import pytest
 
 from clutchwork.declare.schema import REGISTRY, Role
 from clutchwork.rig import PRESETS
+from reference.friction import closed_forms, sets
+from reference.friction.build import COUNTERPARTS
 from support import samples
-from support.friction import closed_forms, sets
-from support.friction.build import COUNTERPARTS
 
 LAWS = REGISTRY[Role.LAW]
 ROOT = Path(__file__).resolve().parents[2]
@@ -73,31 +73,31 @@ NEEDS: tuple[tuple[str, str, Callable[[Any], bool], Callable[[Any], bool]], ...]
     ("theory", 'a section <a id="law-{kind}"></a> in docs/theory/friction-laws.md', _any, _has_a_section),
     (
         "closed form",
-        "numbers and the time to stop in tests/support/friction/closed_forms.py",
+        "numbers and the time to stop in tests/reference/friction/closed_forms.py",
         _sticks,
         lambda cls: cls.kind in sets.kinds(closed_forms.LAWS),
     ),
     (
         "counterpart",
-        "an independent one in tests/support/friction/build.py, and numbers in ALL of sets.py",
+        "an independent one in tests/reference/friction/build.py, and numbers in ALL of sets.py",
         _is_compliant,
         lambda cls: cls.kind in COUNTERPARTS and cls.kind in sets.kinds(sets.ALL),
     ),
     (
         "drift test",
-        "numbers in DRIFT of tests/support/friction/sets.py",
+        "numbers in DRIFT of tests/reference/friction/sets.py",
         _is_compliant,
         lambda cls: cls.kind in sets.kinds(sets.DRIFT),
     ),
     (
         "dissipation",
-        "numbers in PASSIVE or SWINGS of tests/support/friction/sets.py",
+        "numbers in PASSIVE or SWINGS of tests/reference/friction/sets.py",
         _is_compliant,
         lambda cls: cls.kind in sets.kinds(sets.PASSIVE | sets.SWINGS),
     ),
     (
         "gearbox",
-        "numbers in SHIFT of tests/support/friction/sets.py",
+        "numbers in SHIFT of tests/reference/friction/sets.py",
         _is_over_slip,
         lambda cls: cls.kind in sets.SHIFT,
     ),

@@ -13,9 +13,9 @@ from clutchwork.schematic.diagram import diagram
 from clutchwork.schematic.moment import Snapshot
 from clutchwork.schematic.picture import Schematic
 from clutchwork.schematic.sheet import sheet
+from reference.msl.elements import missing
+from reference.msl.model import translate
 from support import cases, random_drivelines, random_large, schematics, six_speed
-from support.msl.elements import missing
-from support.msl.model import translate
 
 ROOT = Path(__file__).resolve().parents[2]
 EXAMPLES = sorted((ROOT / "examples").glob("*/model.toml"))
@@ -151,6 +151,16 @@ def _middle(piece) -> float:
 def test_power_flows_from_left_to_right(name: str, way: list[str]) -> None:
     x = {piece.name: _middle(piece) for piece in picture(name).sheet.pieces if piece.what != "heat"}
     assert sorted(way, key=x.__getitem__) == way
+
+
+def test_drives_are_on_the_left_and_brakes_on_the_right() -> None:
+    d = cw.Driveline("brake")
+    motor, rotor = d.shaft("motor shaft", inertia=1.0), d.shaft("rotor", inertia=1.0)
+    d.add(cw.SpringDamper("coupling", base=motor, follower=rotor, stiffness=1e4, damping=1.0))
+    d.add(cw.EddyCurrentBrake("brake", shaft=rotor, nominal_torque=50.0, nominal_speed=20.0))
+    d.add(cw.SpeedTorque("motor", shaft=motor, torque=[(0.0, 40.0), (100.0, -10.0)]))
+    x = {piece.name: _middle(piece) for piece in d.draw().sheet.pieces}
+    assert x["motor"] < x["coupling"] < x["brake"]
 
 
 @pytest.mark.parametrize(("name", "most"), [

@@ -8,22 +8,9 @@ from hypothesis import strategies as st
 
 import clutchwork as cw
 
-EIGHT = {
-    "name": "eight-speed", "input": "in", "output": "out",
-    "sets": {
-        "P1": {"type": "single", "sun": "S12", "ring": "R1", "carrier": "C1R4", "teeth_sun": 48, "teeth_ring": 96},
-        "P2": {"type": "single", "sun": "S12", "ring": "R2S3", "carrier": "in", "teeth_sun": 48, "teeth_ring": 96},
-        "P3": {"type": "single", "sun": "R2S3", "ring": "R3S4", "carrier": "C3", "teeth_sun": 69, "teeth_ring": 111},
-        "P4": {"type": "single", "sun": "R3S4", "ring": "C1R4", "carrier": "out", "teeth_sun": 23, "teeth_ring": 85},
-    },
-    "elements": {
-        "A": ["S12", "housing"], "B": ["R1", "housing"], "C": ["in", "R3S4"], "D": ["C3", "out"], "E": ["R2S3", "R3S4"],
-    },
-    "gears": {
-        "1": ["A", "B", "C"], "2": ["A", "B", "E"], "3": ["B", "C", "E"], "4": ["B", "D", "E"], "5": ["B", "C", "D"],
-        "6": ["C", "D", "E"], "7": ["A", "C", "D"], "8": ["A", "D", "E"], "R": ["A", "B", "D"],
-    },
-}  # fmt: skip
+from .gearboxes import EIGHT_SPEED, changed
+
+EIGHT = changed(EIGHT_SPEED, sets__P4__teeth_sun=23, sets__P4__teeth_ring=85, published=None)
 LEPELLETIER = {
     "name": "six-speed", "input": "in", "output": "out",
     "sets": {

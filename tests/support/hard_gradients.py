@@ -8,9 +8,7 @@ planetary sets in gear, linings that heat up; outputs are those that look into s
 
 from __future__ import annotations
 
-import argparse
 import re
-import warnings
 from collections import Counter
 from collections.abc import Callable
 from dataclasses import dataclass, field, replace
@@ -24,6 +22,7 @@ from clutchwork.gradients.finite_differences import weights
 from clutchwork.gradients.lines import lines
 from clutchwork.sweeps.outputs import Extreme, asked
 from support import by_differences, free_numbers
+from support.any_model.gradients import arguments
 from support.by_differences import TIGHT
 
 Rng = np.random.Generator
@@ -339,12 +338,7 @@ def _slope(runs: Exact, x0: np.ndarray, number: int, step: float, places: tuple[
 
 def main() -> None:
     """Run it."""
-    parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("--models", type=int, default=100)
-    parser.add_argument("--seed", type=int, default=0)
-    parser.add_argument("--numbers", type=int, default=5, help="numbers of each model")
-    given = parser.parse_args()
-    warnings.simplefilter("ignore")
+    given = arguments(__doc__)
     total: Counter[str] = Counter()
     for seed in range(given.seed, given.seed + given.models):
         try:

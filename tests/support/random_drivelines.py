@@ -15,8 +15,7 @@ from dataclasses import dataclass
 import numpy as np
 
 import clutchwork as cw
-
-from . import independent
+from reference import independent
 
 T_END = 2.0
 HOUSING = -1

@@ -12,6 +12,10 @@ MOTORING = ((0.0, -25.0), (700.0, -70.0))
 SENSED = cw.shifts.Sensed(torque=("converter.turbine.torque",), throttle="combustion.throttle")
 RIGID = cw.shifts.Sensed(torque=("combustion.torque", "combustion.drag.torque"), throttle="combustion.throttle")
 SPEED = 200.0  # rad/s of the input in a drive
+ENGINE: dict[str, Any] = {
+    "full_load": FULL_LOAD, "motoring": MOTORING, "lag": 0.05, "idle_speed": IDLE, "idle_gain": 0.02,
+    "idle_integral": 0.05, "idle_limit": 0.5, "initial_idle": 0.1,
+}  # fmt: skip
 
 
 def car(box: cw.Gearbox, gear: str, turbine: float = SPEED, throttle: float = 0.0, **transmission: Any) -> cw.Driveline:
@@ -23,21 +27,7 @@ def car(box: cw.Gearbox, gear: str, turbine: float = SPEED, throttle: float = 0.
     engine = d.shaft("engine", inertia=0.2, speed=max(IDLE, turbine))
     shaft = d.shaft("turbine", inertia=0.06, speed=turbine)
     output = d.shaft("output", inertia=0.02, speed=None if ratio else 0.0)
-    d.add(
-        cw.Engine(
-            "combustion",
-            shaft=engine,
-            throttle=throttle,
-            full_load=FULL_LOAD,
-            motoring=MOTORING,
-            lag=0.05,
-            idle_speed=IDLE,
-            idle_gain=0.02,
-            idle_integral=0.05,
-            idle_limit=0.5,
-            initial_idle=0.1,
-        )
-    )
+    d.add(cw.Engine("combustion", shaft=engine, throttle=throttle, **ENGINE))
     d.add(
         cw.TorqueConverter(
             "converter",
@@ -61,21 +51,7 @@ def rigid(box: cw.Gearbox, gear: str, engine: float = IDLE, **transmission: Any)
     turning = engine / ratio if ratio else 0.0
     shaft = d.shaft("engine", inertia=0.25, speed=engine)
     output = d.shaft("output", inertia=0.02, speed=None if ratio else 0.0)
-    d.add(
-        cw.Engine(
-            "combustion",
-            shaft=shaft,
-            throttle=0.0,
-            full_load=FULL_LOAD,
-            motoring=MOTORING,
-            lag=0.05,
-            idle_speed=IDLE,
-            idle_gain=0.02,
-            idle_integral=0.05,
-            idle_limit=0.5,
-            initial_idle=0.1,
-        )
-    )
+    d.add(cw.Engine("combustion", shaft=shaft, throttle=0.0, **ENGINE))
     values = {"inertia": 0.008, "torque": 450.0, **transmission}
     d.add(cw.Transmission("gearbox", gearbox=box, input=shaft, output=output, gear=gear if ratio else None, **values))
     _axle(d, output, turning)

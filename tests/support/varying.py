@@ -9,8 +9,9 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 import clutchwork as cw
+from reference import independent
 
-from . import independent, random_drivelines
+from . import random_drivelines
 
 
 @dataclass(frozen=True)

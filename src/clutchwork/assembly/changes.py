@@ -18,7 +18,7 @@ from clutchwork.declare.schema import specs
 from clutchwork.declare.wording import words_of_files
 from clutchwork.model.changes import Owners, Renewed, Target, changed_model, named, renewed, target, with_values
 from clutchwork.model.components import component_advice, component_problems
-from clutchwork.model.fields import BROKEN, SOUND, At, value_problems
+from clutchwork.model.fields import BROKEN, At, value_problems
 from clutchwork.model.findings import findings
 from clutchwork.model.model import Model
 from clutchwork.model.problems import TOO_FAR_APART
@@ -174,12 +174,8 @@ def is_right(old: Component, new: Component) -> bool:
     if any(value_problems(type(new), dict.fromkeys(values, BROKEN) | unlike, At(new.name, ""))):
         return False
     # rules between the values are looked at, the values no more
-    values[SOUND] = True
-    try:
-        if any(component_problems(new)):
-            return False
-    finally:
-        del values[SOUND]
+    if any(component_problems(new, sound=True)):
+        return False
     if _plain_numbers(type(new)).issuperset((name,) for name, value in unlike.items() if value is not before.get(name)):
         return True
     return not any(component_advice(new)) and not any(temperature_advice([new], []))

@@ -12,7 +12,6 @@ from clutchwork.base.progress import followed
 from clutchwork.base.quote import quote
 from clutchwork.calibration.limits import Limit
 from clutchwork.calibration.memory import Checkpoint
-from clutchwork.calibration.method import SOLVERS
 from clutchwork.calibration.problem import CalibrationProblem, Mistakes, problem, refuse_bounds
 from clutchwork.calibration.record import SearchSettings
 from clutchwork.calibration.result import Calibration, CalibrationInterrupted, found_by
@@ -49,7 +48,6 @@ def calibrate(
     free: Mapping[str, Any],
     minimise: Any,
     subject_to: Sequence[Limit] | Limit = (),
-    solver: str = "slsqp",
     starts: int = STARTS,
     scatter: Mapping[str, Any] | None = None,
     samples: int = 64,
@@ -69,9 +67,9 @@ def calibrate(
     unless it is given; free, bounds (low, high) by name, in SI or with units: names of `cw.differentiable`, a range of
     a table by "c1.pressure.values[2:]", or any name with `cw.together`; minimise, an output as `cw.sweep` takes it,
     `cw.jerk`, `cw.rms_jerk`, `cw.squared_slope`, or a sum {output: weight, ...}; one of several values is made least
-    where it is largest. subject_to, limits, each a `cw.limit`; solver, "slsqp", "trust-constr" or "ipopt"; starts, from
-    how many points to search: the values of the model first, then others between the bounds, by default three, each as
-    long as one, and their goals are `spread`; threads, how many of these go at once.
+    where it is largest. subject_to, limits, each a `cw.limit`; starts, from how many points to search: the
+    values of the model first, then others between the bounds, by default three, each as long as one, and their goals
+    are `spread`; threads, how many of these go at once.
 
     scatter, what differs in production, given as free is: limits then hold in all of so many samples, and in all
     corners where no more than four scatter; the goal is the mean of the first nine samples, or with robust="worst" that
@@ -83,6 +81,8 @@ def calibrate(
     Ctrl-C raises `CalibrationInterrupted`, a KeyboardInterrupt, whose `calibration` holds the best so far. All
     mistakes of the call are named at once, by UseError. docs/guide/calibrate.md
     """
+    if "solver" in changes:
+        raise UseError("calibrate", ["solver was given, and SLSQP alone searches: leave it out"])
     system = model_of("calibrate", model, options)
     given = {**changes} if t_end is None else {**changes, "t_end": t_end}
     tight = {name: value for name, value in TIGHT.items() if name not in changes and options is None}
@@ -90,7 +90,7 @@ def calibrate(
     plain = chosen.changed({"dt": None, "times": None})
     mistakes = Mistakes()
     counts = {"starts": starts, "samples": samples, "threads": threads, "iterations": iterations}
-    mistakes.found += _faults(counts, seed, tolerance, solver, robust, file)
+    mistakes.found += _faults(counts, seed, tolerance, robust, file)
     wanted = mistakes.caught(
         lambda: problem(system, TimeSpan(plain.t_start, end), free, minimise, subject_to, scatter), None
     )
@@ -99,7 +99,7 @@ def calibrate(
     if mistakes.found or wanted is None:
         raise UseError("calibrate", mistakes.found)
     refuse_bounds(wanted)
-    asked = SearchSettings(plain, solver, starts, samples, robust, threads, seed, tolerance, iterations)
+    asked = SearchSettings(plain, starts, samples, robust, threads, seed, tolerance, iterations)
     return searched(wanted, asked, None if file is None else path_of("calibrate", file, "shift.json"), progress)
 
 
@@ -117,9 +117,7 @@ def searched(
     spread = None
     if wanted.scatter:
         spread = Scatter.of(wanted, asked.samples, asked.seed, asked.robust == "worst")
-    way = SearchMethod(
-        SOLVERS[asked.solver], asked.tolerance, asked.iterations, asked.starts, asked.threads, asked.seed, spread
-    )  # fmt: skip
+    way = SearchMethod(asked.tolerance, asked.iterations, asked.starts, asked.threads, asked.seed, spread)
     memory = Checkpoint(file, wanted, asked.identity)
     most = asked.starts * asked.iterations
     with followed(progress, most, "calibrate", "(points, most)", unit=" points") as told, one_thread():
@@ -141,9 +139,7 @@ def _no_mean(wanted: CalibrationProblem) -> list[str]:
             "give robust='worst', or a goal of one value such as cw.rms_jerk"]  # fmt: skip
 
 
-def _faults(
-    counts: Mapping[str, Any], seed: Any, tolerance: Any, solver: Any, robust: Any, file: Any
-) -> list[str]:  # fmt: skip
+def _faults(counts: Mapping[str, Any], seed: Any, tolerance: Any, robust: Any, file: Any) -> list[str]:
     """What is wrong with settings."""
     found = [
         f"{name} is {quote(value)}: give a whole number of at least 1"
@@ -154,10 +150,9 @@ def _faults(
         found.append(f"seed is {quote(seed)}: give a whole number of at least 0")
     if not isinstance(tolerance, float) or not 0.0 < tolerance < 1.0:
         found.append(f"tolerance is {quote(tolerance)}: give a number between 0 and 1, such as 1e-10")
-    for name, value, known in (("solver", solver, (*SOLVERS,)), ("robust", robust, ROBUST)):
-        if value not in known:
-            choices = " or ".join(map(repr, known))
-            found.append(f"{name} is {quote(value)}{near(value, known, f'give {choices}')}")
+    if robust not in ROBUST:
+        choices = " or ".join(map(repr, ROBUST))
+        found.append(f"robust is {quote(robust)}{near(robust, ROBUST, f'give {choices}')}")
     if file is not None and (
         fault := path_fault(os.fspath(file) if isinstance(file, os.PathLike) else file, "shift.json")
     ):

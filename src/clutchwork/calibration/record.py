@@ -38,7 +38,6 @@ class SearchSettings:
     """How it was searched for."""
 
     options: Options
-    solver: str
     starts: int
     samples: int
     robust: str
@@ -50,7 +49,7 @@ class SearchSettings:
     @property
     def identity(self) -> tuple[Any, ...]:
         """What the result depends on."""
-        return (self.options, self.solver, self.starts, self.samples, self.robust, self.seed, self.tolerance)
+        return (self.options, self.starts, self.samples, self.robust, self.seed, self.tolerance)
 
 
 @explained_methods("calibration")
@@ -140,7 +139,3 @@ class CalibrationRecord:
         """Goals that the starts reached where all limits hold, the least first."""
         return tuple(sorted(one.goal for one in self.outcomes if one.is_feasible))
 
-    @property
-    def effort(self) -> str:
-        """How it was searched for."""
-        return self.asked.solver

@@ -11,12 +11,12 @@ from numpy.typing import NDArray
 from clutchwork.base.classes import dataclass
 from clutchwork.calibration.ending import Ending
 from clutchwork.calibration.feasibility import Restoring
-from clutchwork.calibration.method import Solver
 from clutchwork.calibration.optimal import certificate
 from clutchwork.calibration.outcome import FEASIBLE
 from clutchwork.calibration.rows import measure, size_of
 from clutchwork.calibration.scaled import FIRST_REACH, Samples, Scaled
 from clutchwork.calibration.scatter import Scatter, sobol
+from clutchwork.calibration.slsqp import slsqp
 from clutchwork.calibration.trust_region_lp import walked
 
 if TYPE_CHECKING:
@@ -41,7 +41,6 @@ PILOTS = 8
 class SearchMethod:
     """How to search."""
 
-    solver: Solver
     tolerance: float
     iterations: int
     starts: int
@@ -90,7 +89,7 @@ class Solving:
 
     def _smooth(self, scaled: Scaled) -> Array:
         """Where the solver ends."""
-        return self.way.solver(scaled, Ending(scaled, self.way.tolerance), self.way.iterations)
+        return slsqp(scaled, Ending(scaled, self.way.tolerance), self.way.iterations)
 
     def _left(self, scaled: Scaled, y: Array) -> float:
         """What is left of the gradient, in shares of the goal; infinite where limits are broken."""

@@ -88,7 +88,7 @@ def _round(size: float) -> float:
 
 def _effort(found: CalibrationRecord) -> str:
     runs = sum(one.runs for one in found.outcomes)
-    said = [f"{found.effort}, {counted(len(found.outcomes), 'starts')}, {counted(runs, 'runs with gradient')}"]
+    said = [f"{counted(len(found.outcomes), 'starts')}, {counted(runs, 'runs with gradient')}"]
     said.append(f"largest violation {found.certificate.violation:.1g} of its scale")
     if len(found.spread) > 1:
         said.append(f"they reached {', '.join(map(_number, found.spread))} {found.problem.unit}".rstrip())
@@ -125,7 +125,7 @@ def faults(found: CalibrationRecord) -> Iterator[str]:
         left = f"what is left of the gradient is {found.certificate.residual:.2g} of the goal"
         yield (
             f"{left}, and a step to a neighbour may make it less: the search stopped before the least one; give more "
-            "iterations or starts, another solver, or search again from found.system"
+            "iterations or starts, or search again from found.system"
         )
         if found.corner:
             yield f"the goal has a corner there: {found.corner}"

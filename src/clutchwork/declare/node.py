@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import fields
+from dataclasses import field, fields
 from enum import Enum, Flag, auto
 from functools import cached_property
 from typing import TYPE_CHECKING, Any, ClassVar, NamedTuple, Protocol, TypeAlias, cast
@@ -352,6 +352,10 @@ class Component(Element):
         """Where its heat goes; None: nowhere that is followed."""
         return None
 
+    def drives(self) -> bool | None:
+        """Of an element at one shaft: whether it drives it, or loads it; None: neither. Pictures have drives left."""
+        return None
+
     def fault_warning(self) -> str:
         """What to warn of when a fault of it is triggered, such as "cannot transmit"; empty: nothing."""
         return ""
@@ -445,14 +449,12 @@ class Signal(Declared):
     kind: ClassVar[str]
     role: ClassVar[Role]
 
+    # whether it has values with units, whose meaning depends on what it drives
+    has_units: bool = field(default=False, init=False, repr=False, compare=False)
+
     def problems(self) -> Found:
         """What the bounds of single values cannot say, as (quantity, what is wrong, remedy)."""
         return []
-
-    def __setstate__(self, state: dict[str, Any]) -> None:
-        vars(self).update(state)
-        if to_si.OPEN in state:
-            to_si.mark_open(self)
 
     def segments(self) -> tuple[Segment, ...]:
         """Pieces in order of their start.

@@ -79,7 +79,7 @@ class Spec:
     rows: bool = False  # of numbers: rows of equally many
     choices: tuple[str, ...] = ()  # a text in Python, its place among these in the core
     example: Any = None  # a value that fits the examples of the other fields
-    last: bool = False  # stands behind all other fields in files and tables
+    last: int = 0  # in files and tables it stands behind its own fields, those with more further back
     difference: bool = False  # of two values, so that of temperatures it has no zero in degrees Celsius
 
     @property
@@ -107,7 +107,7 @@ def port(
     *,
     default: None = MISSING,  # type: ignore[assignment]
     domain: str = "",
-    last: bool = False,
+    last: int = 0,
 ) -> Any:
     """What the component is attached to: a shaft, a mass or the housing; with default None: the housing.
 
@@ -251,7 +251,7 @@ def option(
     at_most: float | None = None,
     units: tuple[str, ...] = (),
     flag: bool = False,
-    last: bool = False,
+    last: int = 0,
     example: float | None = None,
 ) -> Any:
     """A setting that the assembly reads and the equations do not: no part of the C++ `Params`."""
@@ -371,13 +371,15 @@ def component(
         _check_work(cls)
         frozen.kind, frozen.role, frozen.states, frozen.hooks, frozen.ways = kind, role, states, hooks, ways
         REGISTRY[role].add(kind, frozen)
-        PLAIN.add(frozen)
+        # a signal may have values with units, whose meaning depends on what it drives
+        PLAIN.update(() if role is Role.SIGNAL else (frozen,))
         schema_hash.cache_clear()
         return cls
 
     return register
 
 
+PORTS = ("port", "thermal")
 Declared: TypeAlias = "tuple[tuple[Field[Any], Spec], ...]"
 Inputs: TypeAlias = "tuple[tuple[tuple[str, ...], Spec], ...]"
 
@@ -390,8 +392,8 @@ def specs(cls: type, *what: str) -> Declared:
 @cache
 def _specs(cls: Any, what: tuple[str, ...]) -> Declared:
     found = [(item, item.metadata["spec"]) for item in fields(cls) if "spec" in item.metadata]
-    # sorting keeps the order of equals
-    ordered = sorted(found, key=lambda pair: pair[1].last)
+    # ports come first, also those that a base knows nothing of; sorting keeps the order of equals
+    ordered = sorted(found, key=lambda pair: (pair[1].last, pair[1].what not in PORTS))
     return tuple((item, spec) for item, spec in ordered if not what or spec.what in what)
 
 

@@ -26,8 +26,6 @@ NUMBERS = frozenset((float, int, bool))
 READ = ("param", "option", "signal", "alternative", "curve", "numbers")
 # and those that hold tables
 TABLES = ("named", "elements", "data")
-# in the dictionary of a signal: it holds values with units, whose meaning depends on what it drives
-OPEN = "_has_units"
 
 
 class TargetUnit(NamedTuple):
@@ -181,8 +179,8 @@ def accept(thing: Any) -> None:
             new = driving(value, fits.unit, fits.units)
         else:
             new = field_in_si(value, settled(name, spec, cls, values))
-            if spec.unit == "*" and _is_open(new, spec):
-                mark_open(thing)
+            if spec.unit == "*" and _in_units_of_its_own(new, spec):
+                values["has_units"] = True
         if new is not value:
             values[name] = new
     for name, spec in _tables(cls):
@@ -205,13 +203,7 @@ def table_in_si(value: Any, spec: Spec) -> Any:
     return Frozen({name: wanted.number(number) for name, number in value.items()})
 
 
-def mark_open(signal: Any) -> None:
-    """Remember that a signal has values with units; from now on, those who are given one of its class look for it."""
-    vars(signal)[OPEN] = True
-    PLAIN_TYPES.discard(type(signal))
-
-
-def _is_open(value: Any, spec: Spec) -> bool:
+def _in_units_of_its_own(value: Any, spec: Spec) -> bool:
     """Whether values have units, whose meaning depends on what the signal drives."""
     if spec.what != "curve":
         return has_unit(value)
@@ -221,7 +213,7 @@ def _is_open(value: Any, spec: Spec) -> bool:
 
 def driving(signal: Any, unit: str, others: tuple[str, ...] = ()) -> Any:
     """A signal whose values with units are in that of what it drives; anything else as it is."""
-    if OPEN not in getattr(signal, "__dict__", ()):
+    if not getattr(signal, "has_units", False):
         return signal
     driven = TargetUnit(unit, others)
     cls: Any = type(signal)

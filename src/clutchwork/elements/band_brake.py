@@ -4,12 +4,12 @@ from __future__ import annotations
 
 from math import tau
 
-from clutchwork.declare import Law, Node, Role, SignalLike, component, flag, law, option, param, port, signal
-from clutchwork.elements.bases.heating import Heating
+from clutchwork.declare import Node, Role, SignalLike, component, flag, param, port, signal
+from clutchwork.elements.bases.contacts import Contact
 
 
 @component(Role.CONTACT, hooks=("gain",))
-class BandBrake(Heating):
+class BandBrake(Contact):
     """Band around a drum, pulled at one end and fixed at the other: it energises itself in one direction.
 
     The torque is `force radius (exp(coefficient wrap) - 1)` where the drum pulls the band on, forward slip unless
@@ -21,12 +21,7 @@ class BandBrake(Heating):
 
     shaft: Node = port("drum: slip is its speed relative to the base")
     base: Node | None = port("member that takes the reaction", default=None)
-    friction: Law = law("friction coefficient over slip, static coefficient at rest")
     radius: float = param("m", "radius of the drum", above=0.0)
     wrap: float = param("rad", "angle over which the band lies on the drum", above=0.0, at_most=3 * tau)
     reversed: bool = flag("self-energising in backward slip", default=False)
     force: SignalLike = signal("N", "force at the pulled end; below zero counts as zero", presses=True)
-    tolerance: float = option(
-        "rad/s", "slip below which it may lock; 0: at exactly zero", default=0.0, at_least=0.0, units=("m/s",)
-    )
-    locked: bool = option("1", "locked at the start, by an impulse if necessary", default=False, flag=True)

@@ -4,13 +4,13 @@ from __future__ import annotations
 
 from typing import ClassVar
 
-from clutchwork.declare import Node, Role, SignalLike, component, option, param, port, signal
-from clutchwork.elements.bases.heating import Heating
+from clutchwork.declare import Node, Role, SignalLike, component, param, port, signal
+from clutchwork.elements.bases.contacts import Sticking
 from clutchwork.laws.coulomb import Coulomb
 
 
 @component(Role.CONTACT, hooks=("gain",))
-class BeltContact(Heating):
+class BeltContact(Sticking):
     """Contact whose load is a tension less the centrifugal force of a belt, times a factor for either way of slip.
 
     It holds and slips with `forward` or `backward` times (tension - mass_per_length speed^2), and with nothing where
@@ -33,7 +33,3 @@ class BeltContact(Heating):
     mass_per_length: float = param("kg/m", "mass of the belt over its length", default=0.0, at_least=0.0)
     tension: SignalLike = signal("N", "tension of a strand", presses=True, example=500.0)
     speed: SignalLike = signal("m/s", "speed of the belt", default=0.0)
-    tolerance: float = option(
-        "rad/s", "slip below which it may lock; 0: at exactly zero", default=0.0, at_least=0.0, units=("m/s",)
-    )
-    locked: bool = option("1", "locked at the start, by an impulse if necessary", default=False, flag=True)

@@ -21,7 +21,7 @@ from clutchwork.declare import (
     signal,
 )
 from clutchwork.declare.node import Domain, Part
-from clutchwork.elements.bases.heating import Heating
+from clutchwork.elements.bases.contacts import Sticking
 from clutchwork.elements.belt_contact import BeltContact
 from clutchwork.elements.gear import Gear
 from clutchwork.elements.rolling_wheel import RollingWheel
@@ -31,7 +31,7 @@ MOST_POWER = 20.0
 
 
 @component(Role.COMPOSITE)
-class BeltDrive(Heating):
+class BeltDrive(Sticking):
     """Flat or V-belt between two pulleys: a rigid ratio up to the limit of Eytelwein, then slip with that force.
 
     The slip is that of the circumferences, radius_follower w_follower - radius_base w_base, with a plus where the belt
@@ -68,8 +68,12 @@ class BeltDrive(Heating):
     groove_angle: float | None = param(
         "rad", "angle between the sides of the groove, none: flat", default=None, above=0.0, at_most=pi
     )
-    tolerance: float = option("m/s", "slip below which it may lock; 0: at exactly zero", default=0.0, at_least=0.0)
-    locked: bool = option("1", "without slip at the start, by an impulse if necessary", default=False, flag=True)
+    tolerance: float = option(
+        "m/s", "slip below which it may lock; 0: at exactly zero", default=0.0, at_least=0.0, last=1
+    )
+    locked: bool = option(
+        "1", "without slip at the start, by an impulse if necessary", default=False, flag=True, last=1
+    )
 
     def problems(self) -> Found:
         """What the bounds of single values cannot say, as (quantity, what is wrong, remedy)."""
@@ -142,8 +146,5 @@ class BeltDrive(Heating):
             tension=tension,
             # at a belt without mass its speed does not matter
             speed=larger if self.mass_per_length and not larger.fixed else 0.0,
-            tolerance=self.tolerance,
-            locked=self.locked,
-            heat=self.heat,
-            heat_share=self.heat_share,
+            **self.sticking(),
         )

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable
 
-from clutchwork.declare import Component, Law, Node, Role, ThermalNode, component, law, option, param, port
-from clutchwork.elements.bases.heating import Heating
+from clutchwork.declare import Component, Node, Role, ThermalNode, component, param, port
+from clutchwork.elements.bases.contacts import Contact
 from clutchwork.elements.flyweights import Flyweights
 from clutchwork.elements.plate_contact import PlateContact
 
@@ -20,7 +20,7 @@ class Shoes(Flyweights):
 
 
 @component(Role.COMPOSITE)
-class CentrifugalClutch(Heating):
+class CentrifugalClutch(Contact):
     """Clutch whose shoes the speed of its base throws against a drum.
 
     The capacity is `coefficient shoes drum_radius mass radius (speed^2 - onset^2)` above the speed `onset`; the shoes
@@ -29,15 +29,12 @@ class CentrifugalClutch(Heating):
 
     base: Node = port("shaft with the shoes, whose speed closes it")
     follower: Node = port("drum: slip = follower - base")
-    friction: Law = law("friction coefficient over slip, static coefficient at rest")
     shoes: int = param("1", "number of shoes", default=2, above=0.0, whole=True)
     mass: float = param("kg", "mass of each shoe", above=0.0)
     radius: float = param("m", "distance of the centre of mass of a shoe from the axis", above=0.0)
     drum_radius: float = param("m", "inner radius of the drum", above=0.0)
     onset: float = param("rad/s", "speed at which the shoes leave their springs", at_least=0.0)
     lag: float = param("s", "time constant of the shoes", default=5e-3, above=0.0)
-    tolerance: float = option("rad/s", "slip below which it may lock; 0: at exactly zero", default=0.0, at_least=0.0)
-    locked: bool = option("1", "locked at the start, by an impulse if necessary", default=False, flag=True)
 
     def parts(self) -> Iterable[Component | ThermalNode]:
         """The shoes and the contact."""
@@ -59,8 +56,5 @@ class CentrifugalClutch(Heating):
             friction=self.friction,
             gain=self.shoes * self.drum_radius,
             normal_force=weights,
-            tolerance=self.tolerance,
-            locked=self.locked,
-            heat=self.heat,
-            heat_share=self.heat_share,
+            **self.sticking(),
         )

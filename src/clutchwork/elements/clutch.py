@@ -3,24 +3,16 @@
 from __future__ import annotations
 
 from clutchwork.declare import (
-    GAIN_OF_FORCE,
-    GAIN_OF_PRESSURE,
-    Law,
     Node,
     Role,
-    SignalLike,
     component,
-    law,
-    option,
-    param,
     port,
-    signal,
 )
-from clutchwork.elements.bases.heating import Heating
+from clutchwork.elements.bases.contacts import Pressed
 
 
 @component(Role.CONTACT)
-class Clutch(Heating):
+class Clutch(Pressed):
     """Clutch that slips, locks exactly and breaks away.
 
     Use it for a plate clutch between two shafts that is closed by a pressure. Capacity is
@@ -30,23 +22,3 @@ class Clutch(Heating):
 
     base: Node = port("side that the slip is measured from")
     follower: Node = port("side whose motion is positive: slip = follower - base")
-    friction: Law = law("friction coefficient over slip, static coefficient at rest")
-    gain: float = param(
-        "m3", "torque per unit of pressure and coefficient", above=0.0, units=GAIN_OF_FORCE + GAIN_OF_PRESSURE
-    )
-    pressure: SignalLike | None = signal(
-        "Pa", "pressure on the piston", default=None, gain=GAIN_OF_PRESSURE, presses=True
-    )
-    normal_force: SignalLike | None = signal(
-        "N",
-        "force on the linings, or its share, 0 to 1",
-        default=None,
-        units=("1",),
-        gain=GAIN_OF_FORCE,
-        instead_of="pressure",
-        presses=True,
-    )
-    tolerance: float = option(
-        "rad/s", "slip below which it may lock; 0: at exactly zero", default=0.0, at_least=0.0, units=("m/s",)
-    )
-    locked: bool = option("1", "locked at the start, by an impulse if necessary", default=False, flag=True)

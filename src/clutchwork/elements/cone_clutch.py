@@ -7,25 +7,22 @@ from math import pi, sin
 
 from clutchwork.declare import (
     Component,
-    Law,
     Node,
     Role,
     SignalLike,
     ThermalNode,
     component,
-    law,
-    option,
     param,
     port,
     signal,
 )
+from clutchwork.elements.bases.contacts import Contact
 from clutchwork.elements.bases.geometry import Found, effective_radius, ring_problems
-from clutchwork.elements.bases.heating import Heating
 from clutchwork.elements.plate_contact import PlateContact
 
 
 @component(Role.COMPOSITE)
-class ConeClutch(Heating):
+class ConeClutch(Contact):
     """Clutch with conical surfaces, which an axial force wedges together.
 
     The torque is `coefficient force radius / sin(half_angle)`, with the effective radius given or that of the ring that
@@ -37,7 +34,6 @@ class ConeClutch(Heating):
 
     base: Node = port("side that the slip is measured from")
     follower: Node = port("side whose motion is positive: slip = follower - base")
-    friction: Law = law("friction coefficient over slip, static coefficient at rest")
     radius: float | None = param(
         "m", "effective radius, in place of the diameters", default=None, above=0.0, example=0.05
     )
@@ -46,8 +42,6 @@ class ConeClutch(Heating):
     half_angle: float = param("rad", "angle between the surface and the axis", above=0.0, at_most=pi / 2, example=0.12)
     surfaces: int = param("1", "number of friction surfaces", default=1, above=0.0, whole=True)
     force: SignalLike = signal("N", "axial force; below zero counts as zero", presses=True)
-    tolerance: float = option("rad/s", "slip below which it may lock; 0: at exactly zero", default=0.0, at_least=0.0)
-    locked: bool = option("1", "locked at the start, by an impulse if necessary", default=False, flag=True)
 
     def problems(self) -> Found:
         """What the bounds of single values cannot say, as (quantity, what is wrong, remedy)."""
@@ -68,8 +62,5 @@ class ConeClutch(Heating):
             friction=self.friction,
             gain=self.gain,
             normal_force=self.force,
-            tolerance=self.tolerance,
-            locked=self.locked,
-            heat=self.heat,
-            heat_share=self.heat_share,
+            **self.sticking(),
         )

@@ -6,13 +6,13 @@ from collections.abc import Iterable
 from typing import Any
 
 from clutchwork.declare import Component, Found, Node, Role, component, option, param, port
-from clutchwork.elements.bases.heating import Heating
+from clutchwork.elements.bases.contacts import Sticking
 from clutchwork.elements.limited_slip import LimitedSlip
 from clutchwork.elements.open_differential import OpenDifferential
 
 
 @component(Role.COMPOSITE)
-class Differential(Heating):
+class Differential(Sticking):
     """Differential of an axle or between axles: 2 carrier = left + right.
 
     Without friction both sides have half of the torque. With a `preload`, a share of the torque or a `bias` it limits
@@ -32,8 +32,8 @@ class Differential(Heating):
     )
     bias: float | None = param("1", "largest ratio of the torques of both sides", default=None, at_least=1.0)
     coast_bias: float | None = param("1", "the same for negative torque, `bias` by default", default=None, at_least=1.0)
-    tolerance: float = option("rad/s", "slip below which both sides may lock", default=0.0, at_least=0.0)
-    locked: bool = option("1", "both sides together at the start", default=False, flag=True)
+    tolerance: float = option("rad/s", "slip below which both sides may lock", default=0.0, at_least=0.0, last=1)
+    locked: bool = option("1", "both sides together at the start", default=False, flag=True, last=1)
 
     def problems(self) -> Found:
         """What the bounds of single values cannot say, as (quantity, what is wrong, remedy)."""
@@ -54,13 +54,7 @@ class Differential(Heating):
         drive, coast = self.shares()
         if self.preload == drive == coast == 0.0:
             return (OpenDifferential(self.name, **ends),)
-        own: dict[str, Any] = {
-            "tolerance": self.tolerance,
-            "locked": self.locked,
-            "heat": self.heat,
-            "heat_share": self.heat_share,
-        }
-        return (LimitedSlip(self.name, preload=self.preload, drive=drive, coast=coast, **ends, **own),)
+        return (LimitedSlip(self.name, preload=self.preload, drive=drive, coast=coast, **ends, **self.sticking()),)
 
 
 def _share(share: float | None, bias: float | None, otherwise: float) -> float:

@@ -8,24 +8,21 @@ from math import pi
 from clutchwork.declare import (
     HOUSING,
     Component,
-    Law,
     Node,
     Role,
     SignalLike,
     ThermalNode,
     component,
-    law,
-    option,
     param,
     port,
     signal,
 )
-from clutchwork.elements.bases.heating import Heating
+from clutchwork.elements.bases.contacts import Contact
 from clutchwork.elements.plate_contact import PlateContact
 
 
 @component(Role.COMPOSITE)
-class DiskBrake(Heating):
+class DiskBrake(Contact):
     """Disc brake: pistons press pads on both sides of a disc.
 
     The torque is `coefficient pressure (pi/4 bore^2) radius pads`. Use it for the brakes of vehicles and machines, with
@@ -36,7 +33,6 @@ class DiskBrake(Heating):
 
     shaft: Node = port("disc: slip is its speed relative to the base")
     base: Node | None = port("member that takes the reaction", default=None)
-    friction: Law = law("friction coefficient over slip, static coefficient at rest")
     radius: float = param("m", "mean radius of the pads", above=0.0)
     bore: float = param("m", "diameter of each piston", above=0.0)
     pads: int = param("1", "number of pads", default=2, above=0.0, whole=True)
@@ -46,8 +42,6 @@ class DiskBrake(Heating):
     normal_force: SignalLike | None = signal(
         "N", "force on each pad", default=None, instead_of="pressure", presses=True
     )
-    tolerance: float = option("rad/s", "slip below which it may lock; 0: at exactly zero", default=0.0, at_least=0.0)
-    locked: bool = option("1", "locked at the start, by an impulse if necessary", default=False, flag=True)
 
     @property
     def gain(self) -> float:
@@ -65,8 +59,5 @@ class DiskBrake(Heating):
             gain=self.gain,
             pressure=self.pressure,
             normal_force=self.normal_force,
-            tolerance=self.tolerance,
-            locked=self.locked,
-            heat=self.heat,
-            heat_share=self.heat_share,
+            **self.sticking(),
         )

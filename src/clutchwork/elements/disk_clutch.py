@@ -21,8 +21,8 @@ from clutchwork.declare import (
     port,
     signal,
 )
+from clutchwork.elements.bases.contacts import Contact
 from clutchwork.elements.bases.geometry import Found, derating_when_worn, effective_radius, ring_problems
-from clutchwork.elements.bases.heating import Heating
 from clutchwork.elements.bases.plates import fault_problems, trigger
 from clutchwork.elements.damper import Damper
 from clutchwork.elements.one_way_clutch import OneWayClutch
@@ -32,7 +32,7 @@ from clutchwork.laws.coulomb import Coulomb
 
 
 @component(Role.COMPOSITE)
-class DiskClutch(Heating):
+class DiskClutch(Contact):
     """Clutch with friction discs between two shafts, closed by a pressure or a normal force.
 
     Capacity is `coefficient * derating * surfaces * radius * (pressure - threshold) * area`, with the effective radius
@@ -75,8 +75,9 @@ class DiskClutch(Heating):
         choices=("bidirectional", "unidirectional"),
         default="bidirectional",
     )
-    tolerance: float = option("rad/s", "slip below which it may lock; 0: at exactly zero", default=1e-3, at_least=0.0)
-    locked: bool = option("1", "locked at the start, by an impulse if necessary", default=False, flag=True)
+    tolerance: float = option(
+        "rad/s", "slip below which it may lock; 0: at exactly zero", default=1e-3, at_least=0.0, last=1
+    )
     thermal_mass: float | None = param("J/K", "heat capacity of the clutch, none by default", default=None, above=0.0)
     initial_temperature: float = param("K", "temperature of the thermal mass at the start", default=300.0, above=0.0)
     temperature_limit: float | None = param(

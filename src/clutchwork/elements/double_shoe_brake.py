@@ -6,13 +6,13 @@ from math import cos, pi, sin
 from numbers import Real
 from typing import Any
 
-from clutchwork.declare import Law, Node, Role, SignalLike, choice, component, law, option, param, port, signal
-from clutchwork.elements.bases.heating import Heating
+from clutchwork.declare import Law, Node, Role, SignalLike, choice, component, param, port, signal
+from clutchwork.elements.bases.contacts import Contact
 from clutchwork.laws.bases.tables import Found
 
 
 @component(Role.CONTACT, hooks=("gain",))
-class DoubleShoeBrake(Heating):
+class DoubleShoeBrake(Contact):
     """Two long hinged shoes inside a drum, both with the same actuating force.
 
     A leading shoe is pressed on by the friction on it, a trailing one pushed off. With the hinge of each shoe at its
@@ -25,7 +25,6 @@ class DoubleShoeBrake(Heating):
 
     shaft: Node = port("drum: slip is its speed relative to the base")
     base: Node | None = port("member that takes the reaction", default=None)
-    friction: Law = law("friction coefficient over slip, static coefficient at rest")
     radius: float = param("m", "radius of the drum", above=0.0, example=0.15)
     hinge: float = param("m", "distance of the hinges from the axis", above=0.0, example=0.12)
     arm: float = param("m", "lever of the actuating force about the hinge", above=0.0, example=0.2)
@@ -37,10 +36,6 @@ class DoubleShoeBrake(Heating):
         default="simplex",
     )
     force: SignalLike = signal("N", "actuating force on each shoe; below zero counts as zero", presses=True)
-    tolerance: float = option(
-        "rad/s", "slip below which it may lock; 0: at exactly zero", default=0.0, at_least=0.0, units=("m/s",)
-    )
-    locked: bool = option("1", "locked at the start, by an impulse if necessary", default=False, flag=True)
 
     def problems(self) -> Found:
         """What the bounds of single values cannot say, as (quantity, what is wrong, remedy)."""

@@ -31,6 +31,10 @@ class EddyCurrentBrake(Heating):
         "K", "temperature of the conductor, that of its `heat` node by default", default=None, otherwise=293.15
     )
 
+    def drives(self) -> bool:
+        """A brake."""
+        return False
+
     def problems(self) -> Found:
         """What the bounds of single values cannot say, as (quantity, what is wrong, remedy)."""
         if self.temperature_coefficient == 0.0:

@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 from clutchwork.declare import Node, Role, SignalLike, component, option, port, signal
-from clutchwork.elements.bases.heating import Heating
+from clutchwork.elements.bases.contacts import Sticking
 from clutchwork.laws.coulomb import Coulomb
 
 
 @component(Role.CONTACT, hooks=("limit",))
-class FundamentalClutch(Heating):
+class FundamentalClutch(Sticking):
     """Clutch that slips with a given torque and holds between two given limits.
 
     Use it where friction is computed elsewhere. It locks when the slip is within the tolerance and the torque that
@@ -27,6 +27,5 @@ class FundamentalClutch(Heating):
     upper: SignalLike = signal("N m", "largest torque that it holds, at least zero", units=("N",))
     lower: SignalLike = signal("N m", "smallest torque that it holds, at most zero", units=("N",))
     tolerance: float = option(
-        "rad/s", "slip below which it may lock; 0: at exactly zero", default=1e-3, at_least=0.0, units=("m/s",)
+        "rad/s", "slip below which it may lock; 0: at exactly zero", default=1e-3, at_least=0.0, units=("m/s",), last=1
     )
-    locked: bool = option("1", "locked at the start, by an impulse if necessary", default=False, flag=True)

@@ -7,13 +7,13 @@ from math import atan, tau
 from typing import Any
 
 from clutchwork.declare import Component, Found, Node, Role, component, option, param, port
-from clutchwork.elements.bases.heating import Heating
+from clutchwork.elements.bases.contacts import Sticking
 from clutchwork.elements.bases.meshing import screw_efficiencies, screw_problems
 from clutchwork.elements.rack_mesh import RackMesh
 
 
 @component(Role.COMPOSITE)
-class Leadscrew(Heating):
+class Leadscrew(Sticking):
     """Screw that moves a mass by its nut, with the friction of its thread; self-locking where its lead is small.
 
     Use it for lifting tables, presses and linear axes. One turn of the screw moves the mass by the lead. The lead angle
@@ -27,8 +27,9 @@ class Leadscrew(Heating):
     radius: float = param("m", "mean radius of the thread", above=0.0, example=0.01)
     friction_coefficient: float = param("1", "of the thread", at_least=0.0, example=0.1)
     normal_angle: float = param("rad", "flank angle in the normal section", default=0.349, at_least=0.0, below=1.5)
-    tolerance: float = option("rad/s", "slip below which it may lock; 0: at exactly zero", default=0.0, at_least=0.0)
-    locked: bool = option("1", "locked at the start, by an impulse if necessary", default=False, flag=True)
+    tolerance: float = option(
+        "rad/s", "slip below which it may lock; 0: at exactly zero", default=0.0, at_least=0.0, last=1
+    )
 
     def problems(self) -> Found:
         """What the bounds of single values cannot say, as (quantity, what is wrong, remedy)."""
@@ -43,10 +44,8 @@ class Leadscrew(Heating):
         """The mesh of screw and nut with its friction."""
         ahead, back = screw_efficiencies(self.lead_angle, self.friction_coefficient, self.normal_angle)
         ends: dict[str, Any] = {"shaft": self.screw, "mass": self.mass, "support": self.support}
-        own: dict[str, Any] = {
-            "tolerance": self.tolerance,
-            "locked": self.locked,
-            "heat": self.heat,
-            "heat_share": self.heat_share,
-        }
-        return (RackMesh(self.name, radius=self.lead / tau, loss_table=((0.0, ahead, back, 0.0, 0.0),), **ends, **own),)
+        return (
+            RackMesh(
+                self.name, radius=self.lead / tau, loss_table=((0.0, ahead, back, 0.0, 0.0),), **ends, **self.sticking()
+            ),
+        )

@@ -5,14 +5,14 @@ from __future__ import annotations
 from collections.abc import Iterable
 from typing import Any
 
-from clutchwork.declare import Component, Found, Node, Role, component, param, port
+from clutchwork.declare import Component, Found, Role, component
 from clutchwork.elements.bases.meshing import Lossy
-from clutchwork.elements.bases.teeth import ring_problems
+from clutchwork.elements.bases.teeth import PlanetarySet
 from clutchwork.elements.mesh import Mesh
 
 
 @component(Role.COMPOSITE)
-class LossyPlanetary(Lossy):
+class LossyPlanetary(PlanetarySet, Lossy):
     """Planetary gear with losses in its meshes, which work relative to the carrier; it sticks exactly, by load.
 
     Use it where the efficiency of a planetary set counts: it depends on which members drive, and is 1 where the set
@@ -24,19 +24,11 @@ class LossyPlanetary(Lossy):
     gearboxes, 2nd Modelica Conference, 2002.
     """
 
-    sun: Node = port("sun wheel")
-    ring: Node = port("ring wheel")
-    carrier: Node = port("carrier of the planets")
-    ratio: float | None = param("1", "teeth of the ring over teeth of the sun", default=None, above=0.0)
-    teeth_sun: int | None = param("1", "teeth of the sun", default=None, above=0.0, whole=True)
-    teeth_ring: int | None = param("1", "teeth of the ring, counted positive", default=None, above=0.0, whole=True)
-
     def problems(self) -> Found:
         """What the bounds of single values cannot say, as (quantity, what is wrong, remedy)."""
-        return ring_problems(self) or self.loss_problems()
+        return super().problems() or self.loss_problems()
 
     def parts(self) -> Iterable[Component]:
         """The mesh between sun and ring, carried by the carrier."""
-        ratio = self.ratio if self.ratio is not None else (self.teeth_ring or 0) / (self.teeth_sun or 1)
         ends: dict[str, Any] = {"input": self.sun, "output": self.ring, "support": self.carrier}
-        return (Mesh(self.name, ratio=-ratio, **ends, **self.mesh()),)
+        return (Mesh(self.name, ratio=-float(self.exact_ratio()), **ends, **self.mesh()),)

@@ -13,17 +13,16 @@ from clutchwork.declare import (
     SignalLike,
     component,
     law,
-    option,
     param,
     port,
     signal,
 )
-from clutchwork.elements.bases.heating import Heating
+from clutchwork.elements.bases.contacts import Pressed
 from clutchwork.laws.coulomb import Coulomb
 
 
 @component(Role.CONTACT)
-class OneWayClutch(Heating):
+class OneWayClutch(Pressed):
     """Freewheel: the follower may run ahead of the base and never falls behind it.
 
     Use it for sprags, roller clutches and ratchets. While locked it transmits any torque that would make the
@@ -50,16 +49,3 @@ class OneWayClutch(Heating):
         otherwise=0.0,
         presses=True,
     )
-    normal_force: SignalLike | None = signal(
-        "N",
-        "force on the linings, or its share, 0 to 1",
-        default=None,
-        units=("1",),
-        gain=GAIN_OF_FORCE,
-        instead_of="pressure",
-        presses=True,
-    )
-    tolerance: float = option(
-        "rad/s", "slip below which it may lock; 0: at exactly zero", default=0.0, at_least=0.0, units=("m/s",)
-    )
-    locked: bool = option("1", "locked at the start, by an impulse if necessary", default=False, flag=True)

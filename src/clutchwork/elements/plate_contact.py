@@ -5,24 +5,21 @@ from __future__ import annotations
 from clutchwork.declare import (
     GAIN_OF_FORCE,
     GAIN_OF_PRESSURE,
-    Law,
     Node,
     Role,
     SignalLike,
     choice,
     component,
     flag,
-    law,
-    option,
     param,
     port,
     signal,
 )
-from clutchwork.elements.bases.heating import Heating
+from clutchwork.elements.bases.contacts import Contact
 
 
 @component(Role.CONTACT, hooks=("fault", "fault_kind", "fault_report"))
-class PlateContact(Heating):
+class PlateContact(Contact):
     """Contact with the load `gain * derating * (pressure - threshold)`, that can wear and fail.
 
     Use it to build couplings of your own; `DiskClutch` computes its gain from the geometry and adds what else a
@@ -31,7 +28,6 @@ class PlateContact(Heating):
 
     base: Node = port("side that the slip is measured from")
     follower: Node = port("side whose motion is positive: slip = follower - base")
-    friction: Law = law("friction coefficient over slip, static coefficient at rest")
     gain: float = param(
         "m3", "torque per unit of pressure and coefficient", above=0.0, units=GAIN_OF_FORCE + GAIN_OF_PRESSURE
     )
@@ -62,10 +58,6 @@ class PlateContact(Heating):
     wear: SignalLike | None = signal("m", "depth of wear, none by default", default=None, otherwise=0.0)
     fault_signal: SignalLike | None = signal("1", "triggers the fault above 0.5", default=None, otherwise=0.0)
     fault_time: SignalLike | None = signal("1", "triggers it above 0.5 as well", default=None, otherwise=0.0)
-    tolerance: float = option(
-        "rad/s", "slip below which it may lock; 0: at exactly zero", default=0.0, at_least=0.0, units=("m/s",)
-    )
-    locked: bool = option("1", "locked at the start, by an impulse if necessary", default=False, flag=True)
 
     def fault_warning(self) -> str:
         """What to warn of when its fault is triggered."""

@@ -2,19 +2,14 @@
 
 from __future__ import annotations
 
-from clutchwork.declare import Component, Node, Role, component, flag, param, port
+from clutchwork.declare import Role, component
+from clutchwork.elements.bases.driving import NominalTorque
 
 
 @component(Role.TORQUE, hooks=("edges", "edge"))
-class QuadraticTorque(Component):
+class QuadraticTorque(NominalTorque):
     """Torque `nominal_torque * x abs(x)` on a shaft, x = speed / nominal_speed, speed relative to the base.
 
     Use it for fans, pumps and air drag; a load that brakes has a negative nominal torque. With
     `same_direction` the torque follows x^2: it acts in the same direction at all speeds.
     """
-
-    shaft: Node = port("shaft that a positive torque accelerates")
-    base: Node | None = port("member that takes the reaction and that the speed is measured from", default=None)
-    nominal_torque: float = param("N m", "torque at nominal speed", units=("N",))
-    nominal_speed: float = param("rad/s", "speed of the nominal torque", above=0.0, units=("m/s",))
-    same_direction: bool = flag("whether it acts in the same direction at all speeds", default=False)

@@ -8,6 +8,7 @@ from typing import Any
 
 from clutchwork.declare import Component, Found, Node, Role, component, exact, param, port
 from clutchwork.elements.bases.meshing import Lossy
+from clutchwork.elements.bases.teeth import ratio_problems
 from clutchwork.elements.rack_mesh import RackMesh
 from clutchwork.elements.rolling_wheel import RollingWheel
 
@@ -32,11 +33,8 @@ class RackPinion(Lossy):
 
     def problems(self) -> Found:
         """What the bounds of single values cannot say, as (quantity, what is wrong, remedy)."""
-        if self.radius is None and None in (self.teeth, self.module):
-            return [("radius", "is missing", "give `radius`, or both `teeth` and `module`")]
-        if self.radius is not None and (self.teeth, self.module) != (None, None):
-            return [("radius", "is given twice, as a number and by teeth", "give only one of the two")]
-        return self.loss_problems() or self.heat_problems()
+        found = ratio_problems(self, "radius", ("teeth", "module"))
+        return found or self.loss_problems() or self.heat_problems()
 
     def exact_radius(self) -> Fraction:
         """Radius of the pitch circle [m] as a fraction."""

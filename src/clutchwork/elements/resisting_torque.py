@@ -22,3 +22,7 @@ class ResistingTorque(Heating):
     base: Node | None = port("member that takes the reaction and that the speed is measured from", default=None)
     torque: SignalLike = signal("N m", "size of the torque", units=("N",))
     speed: float = param("rad/s", "speed at which 76 % of it acts", above=0.0, units=("m/s",))
+
+    def drives(self) -> bool:
+        """A load."""
+        return False

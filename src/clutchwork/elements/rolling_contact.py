@@ -6,13 +6,13 @@ from collections.abc import Iterator
 
 from clutchwork.declare import Law, Node, Role, SignalLike, component, law, option, param, port, signal
 from clutchwork.declare.node import Domain, Part
-from clutchwork.elements.bases.heating import Heating
+from clutchwork.elements.bases.contacts import Contact
 from clutchwork.elements.clutch import Clutch
 from clutchwork.elements.rolling_wheel import RollingWheel
 
 
 @component(Role.COMPOSITE)
-class RollingContact(Heating):
+class RollingContact(Contact):
     """Wheel that rolls without slip while the road can hold it, else slides: a clutch between rim and road.
 
     The slip is `v - radius (w - w_support)`, the force on the mass within `static coefficient * load` while it rolls
@@ -27,8 +27,10 @@ class RollingContact(Heating):
     radius: float = param("m", "rolling radius", above=0.0)
     friction: Law = law("coefficient of the grip over the slip, static coefficient while it rolls")
     load: SignalLike = signal("N", "normal force on the road", presses=True, example=4000.0)
-    tolerance: float = option("m/s", "slip below which it may roll; 0: at exactly zero", default=0.0, at_least=0.0)
-    locked: bool = option("1", "rolls at the start, by an impulse if necessary", default=False, flag=True)
+    tolerance: float = option(
+        "m/s", "slip below which it may roll; 0: at exactly zero", default=0.0, at_least=0.0, last=1
+    )
+    locked: bool = option("1", "rolls at the start, by an impulse if necessary", default=False, flag=True, last=1)
 
     def parts(self) -> Iterator[Part]:
         """The rim, which turns with the wheel, and its contact with the road."""
@@ -42,8 +44,5 @@ class RollingContact(Heating):
             friction=self.friction,
             gain=1.0,
             normal_force=self.load,
-            tolerance=self.tolerance,
-            locked=self.locked,
-            heat=self.heat,
-            heat_share=self.heat_share,
+            **self.sticking(),
         )

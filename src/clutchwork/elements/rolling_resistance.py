@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 from clutchwork.declare import Law, Node, Role, SignalLike, component, law, option, param, port, signal
-from clutchwork.elements.bases.heating import Heating
+from clutchwork.elements.bases.contacts import Contact
 
 
 @component(Role.CONTACT)
-class RollingResistance(Heating):
+class RollingResistance(Contact):
     """Force `weight cos(a) coefficient` against the motion, with `a = atan(slope)`; it holds at rest.
 
     Use it for tyres on a road; `Vehicle` holds one. A vehicle at rest stays there while all other forces are at most
@@ -18,5 +18,6 @@ class RollingResistance(Heating):
     friction: Law = law("rolling coefficient over the speed, static coefficient at rest")
     weight: float = param("N", "weight of all that rolls with it", above=0.0)
     slope: SignalLike = signal("1", "rise over horizontal way, positive uphill", default=0.0, example=0.05)
-    tolerance: float = option("m/s", "speed below which it may lock; 0: at exactly zero", default=0.0, at_least=0.0)
-    locked: bool = option("1", "locked at the start, by an impulse if necessary", default=False, flag=True)
+    tolerance: float = option(
+        "m/s", "speed below which it may lock; 0: at exactly zero", default=0.0, at_least=0.0, last=1
+    )

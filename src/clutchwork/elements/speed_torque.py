@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from clutchwork.declare import Component, Node, Points, Role, component, curve, param, port
+from clutchwork.elements.bases.driving import drives_by
 
 
 @component(Role.TORQUE, hooks=("edges", "edge"))
@@ -16,3 +17,7 @@ class SpeedTorque(Component):
     base: Node | None = port("member that takes the reaction and that the speed is measured from", default=None)
     torque: Points = curve("rad/s", "N m", "torque on the shaft over speed", units=("N",), units_x=("m/s",))
     gain: float = param("1", "factor on the torque", default=1.0)
+
+    def drives(self) -> bool:
+        """Where its table drives more than it brakes."""
+        return drives_by(self.gain * float(torque) for _, torque in self.torque)

@@ -4,13 +4,13 @@ from __future__ import annotations
 
 from typing import ClassVar
 
-from clutchwork.declare import Law, Node, Role, component, law, option, param, port
-from clutchwork.elements.bases.heating import Heating
+from clutchwork.declare import Law, Node, Role, component, law, param, port
+from clutchwork.elements.bases.contacts import Contact
 from clutchwork.laws.coulomb import Coulomb
 
 
 @component(Role.CONTACT, hooks=("holding",))
-class SpragClutch(Heating):
+class SpragClutch(Contact):
     """Freewheel with a drag that gives way when its sprags roll over, at the torque `holding`.
 
     Use it where a freewheel may be overloaded, or where its drag counts. The follower may run ahead of the base
@@ -26,7 +26,3 @@ class SpragClutch(Heating):
     drag: float = param(
         "N m", "drag while it overruns, and after it has rolled over", default=0.0, at_least=0.0, units=("N",)
     )
-    tolerance: float = option(
-        "rad/s", "slip below which it may lock; 0: at exactly zero", default=0.0, at_least=0.0, units=("m/s",)
-    )
-    locked: bool = option("1", "locked at the start, by an impulse if necessary", default=False, flag=True)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from clutchwork.declare import Component, Node, Role, SignalLike, component, port, signal
+from clutchwork.elements.bases.driving import signal_drives
 
 
 @component(Role.TORQUE)
@@ -15,3 +16,7 @@ class Torque(Component):
     shaft: Node = port("shaft that a positive torque accelerates")
     base: Node | None = port("member that takes the reaction", default=None)
     torque: SignalLike = signal("N m", "torque on the shaft", units=("N",))
+
+    def drives(self) -> bool:
+        """By its largest torque over time."""
+        return signal_drives(self.torque)

@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 from clutchwork.declare import Law, Node, Role, component, law, option, param, port
-from clutchwork.elements.bases.heating import Heating
+from clutchwork.elements.bases.contacts import Contact
 from clutchwork.laws.coulomb import Coulomb
 
 
 @component(Role.CONTACT)
-class TorqueLimiter(Heating):
+class TorqueLimiter(Contact):
     """Clutch under a constant spring force that slips when its torque is exceeded.
 
     Use it to protect a drive from overload. With the default friction it slips with the torque at which it breaks
@@ -19,7 +19,4 @@ class TorqueLimiter(Heating):
     follower: Node = port("side whose motion is positive: slip = follower - base")
     torque: float = param("N m", "torque at which it slips, per coefficient", above=0.0, units=("N",))
     friction: Law = law("torque over `torque`, one by default", default=Coulomb(static=1.0, kinetic=1.0))
-    tolerance: float = option(
-        "rad/s", "slip below which it may lock; 0: at exactly zero", default=0.0, at_least=0.0, units=("m/s",)
-    )
-    locked: bool = option("1", "locked at the start, by an impulse if necessary", default=True, flag=True)
+    locked: bool = option("1", "locked at the start, by an impulse if necessary", default=True, flag=True, last=1)

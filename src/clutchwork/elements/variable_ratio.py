@@ -7,7 +7,7 @@ from typing import ClassVar
 
 from clutchwork.declare import Found, Node, Role, SignalLike, component, option, port, signal
 from clutchwork.declare.node import Part
-from clutchwork.elements.bases.heating import Heating
+from clutchwork.elements.bases.contacts import Sticking
 from clutchwork.elements.bases.ratios import ratio_problems
 from clutchwork.elements.clutch import Clutch
 from clutchwork.elements.variable_gear import VariableGear
@@ -15,7 +15,7 @@ from clutchwork.laws.coulomb import Coulomb
 
 
 @component(Role.COMPOSITE)
-class VariableRatio(Heating):
+class VariableRatio(Sticking):
     """Transmission whose ratio varies: speed of the input = ratio times speed of the output, relative to the support.
 
     Use it for a CVT, a toroidal drive, a hydrostatic drive without losses. The ratio is a signal, or the state of a
@@ -42,9 +42,9 @@ class VariableRatio(Heating):
         "N m", "largest torque at the input, unlimited by default", default=None, units=("N",), at_least=0.0
     )
     tolerance: float = option(
-        "rad/s", "slip below which it may grip; 0: at exactly zero", default=0.0, at_least=0.0, units=("m/s",)
+        "rad/s", "slip below which it may grip; 0: at exactly zero", default=0.0, at_least=0.0, units=("m/s",), last=1
     )
-    locked: bool = option("1", "grips at the start, by an impulse if necessary", default=True, flag=True)
+    locked: bool = option("1", "grips at the start, by an impulse if necessary", default=True, flag=True, last=1)
 
     def problems(self) -> Found:
         """What the bounds of single values cannot say, as (quantity, what is wrong, remedy)."""
@@ -67,8 +67,5 @@ class VariableRatio(Heating):
             friction=Coulomb(static=1.0, kinetic=1.0),
             gain=1.0,
             normal_force=self.capacity,
-            tolerance=self.tolerance,
-            locked=self.locked,
-            heat=self.heat,
-            heat_share=self.heat_share,
+            **self.sticking(),
         )

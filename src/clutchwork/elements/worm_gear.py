@@ -5,14 +5,14 @@ from __future__ import annotations
 from collections.abc import Iterable
 from typing import Any
 
-from clutchwork.declare import Component, Found, Node, Role, component, option, param, port
-from clutchwork.elements.bases.heating import Heating
+from clutchwork.declare import Component, Found, Node, Role, component, param, port
+from clutchwork.elements.bases.contacts import Sticking
 from clutchwork.elements.bases.meshing import screw_efficiencies, screw_problems
 from clutchwork.elements.mesh import Mesh
 
 
 @component(Role.COMPOSITE)
-class WormGear(Heating):
+class WormGear(Sticking):
     """Worm gear with the sliding friction of its flanks; self-locking where the lead angle is small.
 
     Use it for hoists, steering and seat drives. With `rho = atan(coefficient/cos(normal_angle))` its efficiency is
@@ -27,8 +27,6 @@ class WormGear(Heating):
     lead_angle: float = param("rad", "lead angle of the worm", above=0.0, below=1.5707963, example=0.1)
     friction_coefficient: float = param("1", "of the flanks", at_least=0.0, example=0.05)
     normal_angle: float = param("rad", "pressure angle in the normal section", default=0.349, at_least=0.0, below=1.5)
-    tolerance: float = option("rad/s", "slip below which it may lock; 0: at exactly zero", default=0.0, at_least=0.0)
-    locked: bool = option("1", "locked at the start, by an impulse if necessary", default=False, flag=True)
 
     def problems(self) -> Found:
         """What the bounds of single values cannot say, as (quantity, what is wrong, remedy)."""
@@ -40,10 +38,6 @@ class WormGear(Heating):
         """The mesh with its friction."""
         ahead, back = screw_efficiencies(self.lead_angle, self.friction_coefficient, self.normal_angle)
         ends: dict[str, Any] = {"input": self.worm, "output": self.wheel, "support": self.support}
-        own: dict[str, Any] = {
-            "tolerance": self.tolerance,
-            "locked": self.locked,
-            "heat": self.heat,
-            "heat_share": self.heat_share,
-        }
-        return (Mesh(self.name, ratio=self.ratio, loss_table=((0.0, ahead, back, 0.0, 0.0),), **ends, **own),)
+        return (
+            Mesh(self.name, ratio=self.ratio, loss_table=((0.0, ahead, back, 0.0, 0.0),), **ends, **self.sticking()),
+        )

@@ -4,18 +4,17 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from functools import cached_property
-from typing import NamedTuple
+from typing import ClassVar
 
 import numpy as np
 from numpy.typing import NDArray
 
 from clutchwork.base.errors import ModelError
 from clutchwork.fit.driven import Driven
+from clutchwork.fit.engine import STAY, LeastSquares, Signals, Solution
 from clutchwork.fit.failure import FitError, scipy
 from clutchwork.fit.losses import Penalty
 from clutchwork.fit.numbers import Numbers
-from clutchwork.fit.search import MOST_ROUNDS, SETTLED, STAY
-from clutchwork.fit.traces import Trace
 from clutchwork.gradients.differentiable import Differentiable, made
 from clutchwork.results.gradient import NoGradient
 from clutchwork.sweeps.outputs import AtTimes
@@ -29,59 +28,52 @@ JUMP = 0.5
 # how far starts lie from the first one, of the scale of a code
 SPREAD = 1.0
 SEED = 14
+# numbers that count as zero
+SMALLEST = 1e-300
 
 
-class DescentResult(NamedTuple):
-    """Where a search ended."""
+class Descent(LeastSquares):
+    """Residuals of all records, each over its deviation or the size of its signal."""
 
-    u: Array
-    squares: float
-    converged: bool
-
-
-class Descent:
-    """What is minimised: residuals, each over its deviation or the size of its signal."""
+    zeros: ClassVar[bool] = True
 
     def __init__(self, records: Sequence[Driven], numbers: Numbers, loss: Penalty | None = None) -> None:
-        self.records, self.numbers, self.loss = records, numbers, loss or Penalty()
-        # residuals from where on they count less; None: all count in full
-        self.within: Array | None = None
-        self.lower, self.upper = numbers.ends()
+        self.records, self.numbers, self.loss, self.exact = records, numbers, loss or Penalty(), False
+        self.items, self.lower, self.upper = numbers.items, *numbers.ends()
+        self.searched = range(len(numbers.items))
+        self.start, self.scales = numbers.codes(), numbers.scales
         self.points, self.fallen = 0, list[str]()  # derivatives that were asked for, and why some did not exist
+        # signals of all records in order, their samples by record, and what residuals are divided by
+        self.traces = [one for record in records for one in record.traces]
+        self.measured = [np.concatenate([one.values for one in record.traces]) for record in records]
+        self.weights = self._weights()
+        self.signals, first = Signals(), 0
+        for one in self.traces:
+            self.signals.setdefault(one.signal, []).append(np.arange(first, first + len(one.times)))
+            first += len(one.times)
+        counted = np.concatenate(self.measured) / np.concatenate(self.weights)
+        self.size = float(np.sqrt(np.mean(counted**2))) or 1.0
+        fixed = np.array([item.is_log or item.start != 0.0 for item in self.items])
+        self.stay = np.where(fixed, STAY * float(np.sqrt(np.sum(counted**2))) / self.scales, 0.0)
+
+    def _weights(self) -> list[Array]:
+        """Of each record: deviations that are given, or the root mean square of the signal over all records."""
+        rows = dict[str, list[Array]]()
+        for one in self.traces:
+            rows.setdefault(one.signal, []).append(one.values)
+        sizes = {name: float(np.sqrt(np.mean(np.concatenate(of) ** 2))) or 1.0 for name, of in rows.items()}
+        return [
+            np.concatenate(
+                [np.full(len(one.times), sizes[one.signal]) if one.deviation is None else one.deviation
+                 for one in record.traces]
+            )
+            for record in self.records
+        ]  # fmt: skip
 
     @cached_property
     def functions(self) -> list[Differentiable]:
         """The signals of each record at its samples, as functions of its numbers."""
         return [_function(one, self.numbers.by) for one in self.records]
-
-    @cached_property
-    def measured(self) -> list[Array]:
-        """Samples of each record."""
-        return [np.concatenate([one.values for one in record.traces]) for record in self.records]
-
-    @cached_property
-    def sizes(self) -> dict[str, float]:
-        """Root mean square of each signal over all records."""
-        rows = dict[str, list[Array]]()
-        for one in self.traces:
-            rows.setdefault(one.signal, []).append(one.values)
-        return {name: float(np.sqrt(np.mean(np.concatenate(of) ** 2))) or 1.0 for name, of in rows.items()}
-
-    @cached_property
-    def traces(self) -> list[Trace]:
-        """Measured signals of all records in order."""
-        return [one for record in self.records for one in record.traces]
-
-    @cached_property
-    def weights(self) -> list[Array]:
-        """What residuals of each record are divided by."""
-        return [
-            np.concatenate(
-                [np.full(len(one.times), self.sizes[one.signal]) if one.deviation is None else one.deviation
-                 for one in record.traces]
-            )
-            for record in self.records
-        ]  # fmt: skip
 
     # ------------------------------------------------------------------------------------------------------- residuals
 
@@ -146,37 +138,11 @@ class Descent:
 
     # ---------------------------------------------------------------------------------------------------------- search
 
-    def solve(self, starts: int) -> list[DescentResult]:
+    def best(self, starts: int) -> list[Solution]:
         """Where the searches from several starts ended, the best one first."""
-        made = [self._solved(u) for u in self._starts(starts)]
-        ended = sorted((one for one in made if one is not None), key=lambda one: one.squares)
-        return ended if self.loss.is_linear else [self._settled(ended[0]), *ended[1:]]
-
-    def _settled(self, ended: DescentResult) -> DescentResult:
-        """With a loss other than squares, by the noise of each signal, which is found on the way."""
-        for _ in range(MOST_ROUNDS):
-            before, self.within = self.within, self._noise(self.residuals(ended.u))
-            if before is not None and np.all(np.abs(self.within - before) <= SETTLED * self.within):
-                break
-            ended = self._solved(ended.u) or ended
-        return ended
-
-    def _noise(self, residuals: Array) -> Array:
-        """From where on residuals count less, for each."""
-        made = np.zeros(len(residuals))
-        for places in self.rows.values():
-            own = np.concatenate(places)
-            made[own] = self.loss.scale(residuals[own], 1.0)
-        return made
-
-    @cached_property
-    def rows(self) -> dict[str, list[NDArray[np.intp]]]:
-        """Places of the residuals of each signal, those of each record on their own."""
-        rows, first = dict[str, list[NDArray[np.intp]]](), 0
-        for one in self.traces:
-            rows.setdefault(one.signal, []).append(np.arange(first, first + len(one.times)))
-            first += len(one.times)
-        return rows
+        made = [self.solve(u) for u in self._starts(starts) if np.all(np.isfinite(self.residuals(u)))]
+        first, *others = sorted(made, key=lambda one: one.squares)
+        return [self.settle(first), *others]
 
     def _starts(self, count: int) -> list[Array]:
         first = np.clip(self.numbers.codes(), self.lower, self.upper)
@@ -197,29 +163,15 @@ class Descent:
                 remedy = "start with values whose run reaches the last sample"
                 raise FitError(f"the run of {record.label}", "ends early with the start values", remedy)
 
-    def _solved(self, u: Array) -> DescentResult | None:
-        if not np.all(np.isfinite(self.residuals(u))):
-            return None
-        stay, start = self._stay(), self.numbers.codes()
-        found = scipy("optimize").least_squares(
-            lambda u: np.append(self.residuals(u), stay * (u - start)),
-            u,
-            jac=lambda u: np.vstack([self.jacobian(u), np.diag(stay)]),
-            bounds=(self.lower, self.upper),
-            x_scale="jac",
-            xtol=1e-10,
-            ftol=1e-12,
-            loss=self.loss.searched(self.within),
-        )
-        left = self.residuals(found.x)
-        costs = left**2 if self.within is None else self.loss.costs(left, self.within)
-        return DescentResult(found.x, float(np.sum(costs)), found.status > 0)
+    def ends(self, u: Array) -> list[tuple[float, float]]:  # noqa: ARG002, numbers of a driveline are not tied
+        """Lowest and highest value of each number; the smallest one above zero is zero to a reader."""
+        return [(0.0 if 0.0 < item.lowest < SMALLEST else item.lowest, item.highest) for item in self.items]
 
-    def _stay(self) -> Array:
-        """Weights of staying at the start values, which alone decide what the samples leave open."""
-        whole = np.sqrt(sum(float(np.sum((m / w) ** 2)) for m, w in zip(self.measured, self.weights, strict=True)))
-        fixed = np.array([item.is_log or item.start != 0.0 for item in self.numbers.items])
-        return np.where(fixed, STAY * float(whole) / self.numbers.scales, 0.0)
+    def sizes(self, jacobian: Array) -> Array:
+        """What changes of codes are measured in: of one that starts at zero what changes the samples by their size."""
+        effects = np.sqrt(np.mean(jacobian**2, axis=0))
+        zero = np.array([not item.is_log and item.start == 0.0 for item in self.items])
+        return np.where(zero & (effects > 0.0), self.size / np.maximum(effects, SMALLEST), self.scales)
 
 
 def _function(record: Driven, by: Sequence[str]) -> Differentiable:

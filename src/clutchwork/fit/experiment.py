@@ -11,7 +11,6 @@ from numpy.typing import NDArray
 
 from clutchwork.base.classes import dataclass
 from clutchwork.fit.information import Information, information
-from clutchwork.fit.intervals import spread_of
 from clutchwork.fit.measurement import Measurement
 from clutchwork.fit.model import model_of
 from clutchwork.fit.ordinates import axis, is_outside
@@ -55,7 +54,7 @@ def advice(search: Residuals, u: Array, deviation: float, places: list[int]) -> 
     candidates = list(_candidates(search, u))
     size, exact = search.measured.size, search.model.exact
     after = [information(np.vstack([before, c.jacobian]), size, exact) for c in candidates]
-    spread, made = spread_of(search, u), {}
+    spread, made = search.spread(u), {}
     for place in places:
         column = _column(unknowns, place)
         left = [_left(known, spread[place]) * noise for known in after]

@@ -13,6 +13,7 @@ from clutchwork.base.plural import counted
 from clutchwork.declare.node import Law as LawBase
 from clutchwork.fit import table
 from clutchwork.fit.adjustable import faults
+from clutchwork.fit.engine import Solution
 from clutchwork.fit.experiment import advice
 from clutchwork.fit.failure import FitError, described_by_nothing
 from clutchwork.fit.intervals import Estimate, estimate
@@ -24,7 +25,7 @@ from clutchwork.fit.ordinates import check_inside
 from clutchwork.fit.profile_intervals import widened
 from clutchwork.fit.readings import likely, of_units
 from clutchwork.fit.result import FitResult, Parameter
-from clutchwork.fit.search import Residuals, Solution
+from clutchwork.fit.search import TORQUE, Residuals
 from clutchwork.fit.sliding import Sliding, noisy
 from clutchwork.fit.temperature import at_temperature
 from clutchwork.fit.unknown import Bounds
@@ -116,7 +117,7 @@ def _fit(
         if equations <= count:
             fault = f"give {equations} equations for {count} parameters"
             raise FitError("samples", fault, "record more samples that slide, or free fewer parameters")
-        return search, search.settle()
+        return search, search.settle(search.solve())
 
     search, solution = searched(samples)
     r2 = _share(search, solution)
@@ -137,7 +138,7 @@ def _share(search: Residuals, solution: Solution) -> float:
     """Share of the variation of the torque that a solution describes."""
     counts = search.model.equations
     left, values = search.residuals(solution.u)[counts], search.measured.torque[counts]
-    return search.loss.share(left, values, search.within if np.isfinite(search.within) else 1.0)
+    return search.loss.share(left, values, 1.0 if search.within is None else search.within[counts])
 
 
 def _turned(search: Residuals) -> list[str]:
@@ -182,24 +183,15 @@ def _result(
     residuals = (fitted - samples.torque)[equations]
     places = [place for place, reason in enumerate(found.reasons) if reason]
     ideas = advice(search, solution.u, found.deviation, places) if places else {}
-    values = unknowns.values(solution.u)
-    parameters = tuple(
-        Parameter(
-            item.name, item.unit, values[place], *found.limits[place], item.start,
-            found.reasons[place], found.directions[place], ideas.get(place, ""),
-        )
-        for place, item in enumerate(unknowns.items)
-    )  # fmt: skip
-    spread = np.sqrt(np.diag(found.covariance))
-    spread = np.where(spread > 0.0, spread, 1.0)
+    parameters = found.parameters(search, solution.u, ideas)
     return FitResult(
         law=law,
         parameters=parameters,
-        correlation=found.covariance / np.outer(spread, spread),
+        correlation=found.correlation,
         confidence=confidence,
         rms=float(np.sqrt(np.mean(residuals**2))),
         r2=r2,
-        alike=found.alike,
+        alike=found.alike[TORQUE],
         converged=solution.converged,
         faults=tuple(faults(law)),
         advice=tuple(f"{name} {message}; {remedy}" for name, message, remedy in law.advice()),
@@ -221,10 +213,11 @@ def _remarks(search: Residuals, residuals: Array, parameters: Sequence[Parameter
             f"the noise of the slip turned the sign of {counted(len(model.noisy), 'samples')} near rest: up to "
             f"{model.rest:.3g} {unit} they count as at rest; give `rest` for another threshold, or remove an offset"
         )
-    if not search.loss.is_linear:
-        off = int(np.sum(np.abs(residuals) > 2.0 * search.within))
+    if search.within is not None:
+        within = float(np.max(search.within))
+        off = int(np.sum(np.abs(residuals) > 2.0 * within))
         made.append(
-            f"residuals count less from {search.within:.3g} {force} on (loss {search.loss.kind!r}): "
+            f"residuals count less from {within:.3g} {force} on (loss {search.loss.kind!r}): "
             f"{counted(off, 'samples')} more than twice as far off"
         )
     return made

@@ -14,7 +14,8 @@ from clutchwork.fit.intervals import Estimate, limits_at
 from clutchwork.fit.reasons import spans
 
 if TYPE_CHECKING:
-    from clutchwork.fit.search import Residuals, Solution
+    from clutchwork.fit.engine import Solution
+    from clutchwork.fit.search import Residuals
 
 Array = NDArray[np.float64]
 

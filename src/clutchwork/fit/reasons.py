@@ -35,7 +35,8 @@ def causes(known: Information, spread: Array, items: Items) -> list[str]:
         for place in np.flatnonzero(involved) if len(names) > 1 else ():
             made[place] = f"the samples determine only a combination of {', '.join(names)}"
     for place in np.flatnonzero(known.silent):
-        for row in np.flatnonzero(np.abs(spread[:, place]) > 0.5):
+        moved = np.abs(spread[:, place])
+        for row in np.flatnonzero(moved > 0.5 * np.max(moved)):
             made[row] = "no sample depends on it"
     return made
 

@@ -33,7 +33,7 @@ def _runs(descent: Descent) -> list[Array]:
 
 def _turns(descent: Descent, runs: list[Array]) -> Iterator[tuple[str, float]]:
     """Speeds that are in 1/min, or were converted twice, and what is left then."""
-    for name in descent.rows:
+    for name in descent.signals:
         pairs = [(one, run) for one, run in zip(descent.traces, runs, strict=True) if one.signal == name]
         if pairs[0][0].unit != "rad/s":
             continue

@@ -13,17 +13,17 @@ from clutchwork.base.errors import ModelError
 from clutchwork.base.plural import counted
 from clutchwork.base.quote import quote
 from clutchwork.declare.calls import explained
-from clutchwork.fit.descent import Descent, DescentResult
-from clutchwork.fit.determined import known
+from clutchwork.fit.descent import Descent
 from clutchwork.fit.driven import Driven, driven
+from clutchwork.fit.engine import Solution
 from clutchwork.fit.failure import FitError, described_by_nothing, refuse
-from clutchwork.fit.fitted_record import Followed
+from clutchwork.fit.intervals import estimate
 from clutchwork.fit.losses import WIDTH, Penalty
-from clutchwork.fit.misfit import is_worse
+from clutchwork.fit.misfit import is_worse, patterns
 from clutchwork.fit.numbers import Numbers, numbers
 from clutchwork.fit.record import Record
 from clutchwork.fit.record_readings import readings
-from clutchwork.fit.response_result import ResponseFit
+from clutchwork.fit.response_result import Followed, ResponseFit
 from clutchwork.fit.traces import label
 from clutchwork.gradients.parameters import changes, parameters
 
@@ -112,18 +112,18 @@ def _taken(record: Record, of: str, free: Sequence[str], own: Sequence[str]) -> 
 
 def _solved(records: Sequence[Driven], searched: Numbers, confidence: float, starts: int, loss: Penalty) -> ResponseFit:
     descent = Descent(records, searched, loss)
-    ended = descent.solve(starts)
+    ended = descent.best(starts)
     best = ended[0]
-    what = known(descent, best.u, confidence)
-    r2 = _share(descent, best)
+    what = estimate(descent, best.u, confidence)
+    r2, odd = _share(descent, best), _doubts(descent, what.felt)
     worse = is_worse(r2, len(np.concatenate(descent.measured)))
     hints = readings(descent)
-    doubts = [*what.doubts, *(hints if worse or what.doubts else ())]
+    doubts = [*odd, *(hints if worse or odd else ())]
     values = searched.values(best.u)
     followed = tuple(_followed(record, searched, values[searched.places(k)]) for k, record in enumerate(records))
     notes = [*(note for record in records for note in record.notes), *(hints if not doubts else ())]
     found = ResponseFit(
-        parameters=what.parameters,
+        parameters=what.parameters(descent, best.u),
         values=_changes(records[0], searched.by[: searched.shared], values[: searched.shared]),
         records=followed,
         rms=_rms(followed),
@@ -131,7 +131,7 @@ def _solved(records: Sequence[Driven], searched: Numbers, confidence: float, sta
         confidence=confidence,
         converged=best.converged,
         correlation=what.correlation,
-        alike=what.alike,
+        alike={name: value for name, value in what.alike.items() if value},
         doubts=tuple(doubts),
         remarks=(*notes, *_remarks(descent, ended, starts)),
     )
@@ -158,19 +158,40 @@ def _rms(records: Sequence[Followed]) -> dict[str, float]:
     return {name: float(np.sqrt(np.mean(np.concatenate(of) ** 2))) for name, of in rows.items()}
 
 
-def _share(descent: Descent, best: DescentResult) -> float:
+def _doubts(descent: Descent, felt: Array) -> list[str]:
+    """Patterns over time that are left in a signal, against its variation in all records."""
+    made, values = list[str](), np.concatenate(descent.measured) / np.concatenate(descent.weights)
+    for name, places in descent.signals.items():
+        size = float(np.std(values[np.concatenate(places)]))
+        rows = {f"time of {name}{of}": felt[own] for of, own in zip(_labels(descent, name), places, strict=True)}
+        made += patterns(rows, size)
+    return made
+
+
+def _labels(descent: Descent, signal: str) -> list[str]:
+    """Names of the records of a signal, for messages."""
+    several = len(descent.records) > 1
+    return [
+        f" ({record.label})" if several else ""
+        for record in descent.records
+        for one in record.traces
+        if one.signal == signal
+    ]
+
+
+def _share(descent: Descent, best: Solution) -> float:
     """Share of the variation of the samples that the runs describe."""
     values, weights = (np.concatenate(rows) for rows in (descent.measured, descent.weights))
     scales = np.ones(len(values)) if descent.within is None else descent.within
     variation = list[float]()
-    for places in descent.rows.values():
+    for places in descent.signals.values():
         own = np.concatenate(places)
         middle = np.median(values[own]) if descent.within is not None else np.mean(values[own])
         variation.append(float(np.sum(descent.loss.costs((values[own] - middle) / weights[own], scales[own]))))
     return 1.0 - best.squares / sum(variation) if sum(variation) > 0.0 else float("nan")
 
 
-def _remarks(descent: Descent, ended: Sequence[DescentResult], starts: int) -> list[str]:
+def _remarks(descent: Descent, ended: Sequence[Solution], starts: int) -> list[str]:
     """How the search went."""
     made = []
     if descent.fallen:

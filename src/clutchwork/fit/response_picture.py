@@ -15,7 +15,7 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
-    from clutchwork.fit.fitted_record import Followed
+    from clutchwork.fit.response_result import Followed
     from clutchwork.fit.traces import Trace
 
 MEASURED, FITTED = COLOURS[0], COLOURS[1]

@@ -11,11 +11,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from clutchwork.base.classes import dataclass
-from clutchwork.base.errors import near
 from clutchwork.base.plural import counted
-from clutchwork.fit.fitted_record import Followed
 from clutchwork.fit.response_picture import picture
-from clutchwork.fit.result import Parameter, table
+from clutchwork.fit.result import ParameterEstimates
+from clutchwork.fit.traces import Trace
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -26,41 +25,33 @@ Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True, eq=False)
-class ResponseFit:
+class Followed:
+    """A record and the run that was fitted to it."""
+
+    label: str
+    traces: tuple[Trace, ...] = field(repr=False)  # what was measured
+    run: Trajectory = field(repr=False)  # with the fitted values, at the instants of the samples
+    values: Mapping[str, Any]  # fitted, also those of this record alone, as `System.changed` takes them
+
+    def residuals(self, one: Trace) -> Array:
+        """Run minus samples of a measured signal."""
+        places = np.searchsorted(self.run.time, one.times)
+        return np.asarray(self.run[one.signal][places] - one.values)
+
+
+@dataclass(frozen=True, eq=False, kw_only=True)
+class ResponseFit(ParameterEstimates):
     """Fitted numbers of a driveline with their intervals, and how well its runs describe the samples."""
 
-    parameters: tuple[Parameter, ...]
     values: Mapping[str, Any]  # fitted values of all records by name, as `System.changed` takes them
     records: tuple[Followed, ...]
     rms: Mapping[str, float]  # of the residuals, by signal, in its unit
-    r2: float  # share of the variation of the samples that the runs describe
-    confidence: float  # of the intervals
-    converged: bool
-    correlation: Array = field(repr=False)  # of the parameters, those that stay above zero by their logarithm
     alike: Mapping[str, float]  # correlation of neighbouring residuals by signal, where it is not chance
-    doubts: tuple[str, ...] = ()  # why the residuals are not noise
-    remarks: tuple[str, ...] = ()  # on how the search went
 
     @property
     def run(self) -> Trajectory:
         """The run with the fitted values; of several records that of the first one."""
         return self.records[0].run
-
-    @property
-    def undetermined(self) -> tuple[Parameter, ...]:
-        """Parameters that the samples do not determine."""
-        return tuple(one for one in self.parameters if not one.determined)
-
-    @property
-    def determined(self) -> bool:
-        """Whether the search ended, what is left is noise, and the samples determine every parameter."""
-        return self.converged and not self.doubts and not self.undetermined
-
-    @property
-    def message(self) -> str:
-        """What stands in the way of using the values, one line each; empty when nothing does."""
-        lines = [] if self.converged else ["the search did not converge: start closer to it or free fewer parameters"]
-        return "\n".join([*lines, *self.doubts, *(str(one) for one in self.undetermined)])
 
     @property
     def notes(self) -> str:
@@ -72,39 +63,20 @@ class ResponseFit:
         ]
         return "\n".join([*self.remarks, *lines])
 
-    def __getitem__(self, name: str) -> Parameter:
-        for one in self.parameters:
-            if one.name == name:
-                return one
-        raise KeyError(f"no fitted parameter {name!r}{near(name, [one.name for one in self.parameters])}")
-
     def plot(self, path: str | Path | None = None) -> Figure:
         """Measured and fitted signals of each record over time; written to `path` when given. Needs matplotlib."""
         return picture(self.records, path)
 
     def data(self) -> dict[str, Any]:
         """All of it but the samples and the runs, for JSON."""
-        return {
-            "determined": self.determined,
-            "converged": self.converged,
-            "message": self.message,
-            "notes": self.notes,
-            "records": [one.label for one in self.records],
-            "samples": self._samples,
-            "rms": dict(self.rms),
-            "r2": self.r2,
-            "confidence": self.confidence,
-            "parameters": [{**vars(one), "determined": one.determined} for one in self.parameters],
-            "correlation": self.correlation.tolist(),
-        }
+        own = {"records": [one.label for one in self.records], "samples": self._samples, "rms": dict(self.rms)}
+        return own | super().data()
 
     @property
     def _samples(self) -> int:
         return sum(len(one.times) for record in self.records for one in record.traces)
 
-    def __str__(self) -> str:
-        """A table for reading."""
+    @property
+    def _head(self) -> str:
         several = f"{counted(len(self.records), 'records')}, " if len(self.records) > 1 else ""
-        head = f"{several}{self._samples} samples, r2 {self.r2:.6g}"
-        parts = [head, table(self.parameters, self.confidence), self.message, self.notes]
-        return "\n\n".join(part for part in parts if part)
+        return f"{several}{self._samples} samples, r2 {self.r2:.6g}"

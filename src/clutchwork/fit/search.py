@@ -1,16 +1,14 @@
-"""Bounded least squares over the free parameters."""
+"""Residuals of a friction law over the codes of its free parameters."""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Sequence
-from functools import cached_property
-from typing import TYPE_CHECKING
+from collections.abc import Callable
+from typing import TYPE_CHECKING, Any, ClassVar
 
 import numpy as np
 from numpy.typing import NDArray
 
-from clutchwork.base.classes import dataclass
-from clutchwork.fit.failure import scipy
+from clutchwork.fit.engine import STAY, LeastSquares
 from clutchwork.fit.losses import Penalty
 
 if TYPE_CHECKING:
@@ -21,46 +19,82 @@ Array = NDArray[np.float64]
 
 # relative steps of difference quotients: of a formula, and of a run that has an error of its own
 STEP_EXACT, STEP_RUN = 1e-5, 1e-3
-MOST_ITERATIONS = 200
-# weight of staying at the start value, which alone decides what the samples leave open
-STAY = 1e-6
-# times that the noise is found anew for a loss, and by what share it may still change at the end
-MOST_ROUNDS, SETTLED = 20, 1e-3
+# the signal that is measured
+TORQUE = "torque"
 
 
-@dataclass(frozen=True)
-class Solution:
-    """Where the search ended."""
+class Residuals(LeastSquares):
+    """Fitted minus measured torque of all samples [N m], and derivatives by central differences."""
 
-    u: Array  # codes
-    converged: bool
-    squares: float  # N2 m2, sum over the samples, as they count
-
-
-class Residuals:
-    """Residuals of all samples over the codes of the free parameters, and their derivatives."""
+    settings: ClassVar[dict[str, Any]] = {"gtol": 1e-12, "max_nfev": 200}
 
     def __init__(
         self, model: Model, unknowns: Unknowns, scales: Array | None = None, loss: Penalty | None = None
     ) -> None:
-        self.model, self.unknowns, self._scales = model, unknowns, scales
-        self.measured, self.loss = model.measured, loss or Penalty()
-        # of the residuals, from where on they count less [N m]
-        self.within = np.inf
+        self.model, self.unknowns, self.measured = model, unknowns, model.measured
+        self.items, self.lower, self.upper, self.start = unknowns.items, unknowns.lower, unknowns.upper, unknowns.start
+        self.searched = unknowns.searched
+        self.loss, self.exact, self.size = loss or Penalty(), model.exact, model.measured.size
+        # others only hold from one side, and determine nothing
+        self.signals = {TORQUE: [np.flatnonzero(model.equations)]}
         self.step = STEP_EXACT if model.exact else STEP_RUN
         self.logs = [unknowns.items[place].is_log for place in unknowns.searched]
+        self.scales = self._typical_sizes() if scales is None else scales
+        self.stay = STAY * float(np.sqrt(np.sum(self.measured.torque**2))) / self.scales
+
+    def noise(self, residuals: Array) -> Array:
+        """From where on residuals count less, also those that give no equation."""
+        return np.full(len(residuals), np.max(super().noise(residuals)))
 
     def residuals(self, u: Array) -> Array:
         """Fitted minus measured torque of every sample [N m]."""
         return self.model.torque(self.unknowns.law_at(u)) - self.measured.torque
 
-    @cached_property
-    def scales(self) -> Array:
-        """What a change of each code by one step is measured in: 1 for logarithms, a typical size for numbers."""
-        if self._scales is not None:
-            return self._scales
-        start = self.unknowns.start
-        made = np.where(self.logs, 1.0, np.abs(start))
+    def jacobian(self, u: Array) -> Array:
+        """Derivatives of the residuals by the codes, shape (samples, codes)."""
+        return derivatives(self.residuals, u, self)
+
+    def codes(self, u: Array) -> Array:
+        """Codes of all parameters."""
+        return self.unknowns.codes(u)
+
+    def ends(self, u: Array) -> list[tuple[float, float]]:
+        """Lowest and highest value of each parameter, where the others have these codes."""
+        return self.unknowns.ends(u)
+
+    def spread(self, u: Array) -> Array:
+        """Derivatives of the codes of all parameters by those that are searched for."""
+        columns = []
+        for place in range(len(u)):
+            move = np.zeros(len(u))
+            move[place] = 1e-6 * max(1.0, abs(u[place]))
+            columns.append((self.codes(u + move) - self.codes(u - move)) / (2.0 * move[place]))
+        return np.array(columns).T
+
+    def reach(self, u: Array, place: int, most: float) -> tuple[float, float]:
+        """How far a parameter without effect can go until bounds at rest break, or samples notice it after all."""
+        base, row = float(np.sum(self.residuals(u) ** 2)), self.searched[place]
+
+        def moved(code: float) -> Array:
+            return np.where(np.arange(len(u)) == place, code, u)
+
+        def noticed(code: float) -> bool:
+            return float(np.sum(self.residuals(moved(code)) ** 2)) - base > most
+
+        made = list(self.ends(u)[row])
+        for side, end in enumerate((self.lower[place], self.upper[place])):
+            far = end if np.isfinite(end) else u[place] + 1e3 * self.scales[place] * (2 * side - 1)
+            if noticed(far):
+                near = u[place]
+                for _ in range(40):
+                    middle = 0.5 * (near + far)
+                    near, far = (near, middle) if noticed(middle) else (middle, far)
+                made[side] = float(self.values(moved(near))[row])
+        return made[0], made[1]
+
+    def _typical_sizes(self) -> Array:
+        """Of a change of each code: 1 for logarithms, a typical size for numbers."""
+        made = np.where(self.logs, 1.0, np.abs(self.start))
         for place in np.flatnonzero(made == 0.0):
             made[place] = self._typical(int(place))
         return made
@@ -76,63 +110,12 @@ class Residuals:
                 return float(10.0**exponent * size / change)
         return 1.0
 
-    def jacobian(self, u: Array) -> Array:
-        """Derivatives of the residuals by the codes, shape (samples, codes), by central differences."""
-        return derivatives(self.residuals, u, self)
 
-    def tied(self, u: Array) -> Array:
-        """Residuals, and small ones more for leaving the start values."""
-        stay = STAY * float(np.sqrt(np.sum(self.measured.torque**2))) * (u - self.unknowns.start) / self.scales
-        return np.concatenate([self.residuals(u), stay])
-
-    def settle(self) -> Solution:
-        """The best codes; with a loss other than squares the noise, which it is measured by, is found on the way."""
-        made = self.solve()
-        for _ in range(0 if self.loss.is_linear else MOST_ROUNDS):
-            before, own = self.within, self.residuals(made.u)[self.model.equations]
-            self.within = self.loss.scale(own, self.measured.size)
-            if abs(self.within - before) <= SETTLED * self.within:
-                break
-            made = self.solve(made.u)
-        return made
-
-    def solve(self, start: Array | None = None, held: Sequence[int] = ()) -> Solution:
-        """The best codes within their bounds.
-
-        Parameters: start, codes to start from, by default those of the start values; held, places of codes that stay.
-        """
-        whole = self.unknowns.start if start is None else start
-        moving = np.setdiff1d(np.arange(len(whole)), held)
-        lower, upper = self.unknowns.lower[moving], self.unknowns.upper[moving]
-
-        def full(part: Array) -> Array:
-            made = whole.copy()
-            made[moving] = part
-            return made
-
-        robust = np.full(len(self.measured.time), self.within) if np.isfinite(self.within) else None
-        found = scipy("optimize").least_squares(
-            lambda part: self.tied(full(part)),
-            np.clip(whole[moving], lower, upper),
-            jac=lambda part: derivatives(self.tied, full(part), self, moving),
-            bounds=(lower, upper), method="trf", x_scale="jac", xtol=1e-10, ftol=1e-12, gtol=1e-12,
-            max_nfev=MOST_ITERATIONS, loss=self.loss.searched(robust),
-        )  # fmt: skip
-        # the search comes close to its bounds and never touches them
-        close = 1e-9 * np.maximum(self.scales[moving], np.abs(found.x))
-        part = np.where(found.x - lower < close, lower, np.where(upper - found.x < close, upper, found.x))
-        left = self.residuals(full(part))
-        squares = float(np.sum(left**2 if robust is None else self.loss.costs(left, self.within)))
-        return Solution(full(part), found.status > 0, squares)
-
-
-def derivatives(
-    function: Callable[[Array], Array], u: Array, search: Residuals, places: Iterable[int] | None = None
-) -> Array:
-    """Difference quotients by every code, or some: central inside the bounds, one-sided at them."""
+def derivatives(function: Callable[[Array], Array], u: Array, search: Residuals) -> Array:
+    """Difference quotients by every code: central inside the bounds, one-sided at them."""
     lower, upper = search.unknowns.lower, search.unknowns.upper
     columns = []
-    for place in range(len(u)) if places is None else places:
+    for place in range(len(u)):
         step = search.step * max(float(search.scales[place]), 0.0 if search.logs[place] else abs(float(u[place])))
         above, below = u.copy(), u.copy()
         above[place] = min(u[place] + step, upper[place])

@@ -18,15 +18,15 @@ from clutchwork.model.numbers import At
 from clutchwork.model.thermal import Within
 
 
-def component_problems(component: Component, at: At | None = None) -> Iterator[Problem]:
+def component_problems(component: Component, at: At | None = None, *, sound: bool = False) -> Iterator[Problem]:
     """All mistakes of one element, its friction law, its signals and the elements that its tables describe.
 
-    Parameters: at, its place where it is not one of its own.
+    Parameters: at, its place where it is not one of its own; sound, whether its values are known to be right.
     """
     at = at or At(path_of(component), "")
-    found = list(object_problems(component, at))
+    found = list(object_problems(component, at, sound=sound))
     # rules between values may be broken, values themselves may not
-    entries = component.entries() if not found or is_sound(component) else ()
+    entries = component.entries() if not found or sound or is_sound(component) else ()
     found += [problem for entry in entries for problem in _entry_problems(entry, at)]
     found = found or list(_beyond_numbers(component, at))
     yield from found

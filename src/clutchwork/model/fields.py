@@ -31,9 +31,12 @@ class Broken:
 BROKEN = Broken()
 
 
-def object_problems(thing: Any, at: At) -> Iterator[Problem]:
-    """All mistakes of a declared object: an element, a law or a signal."""
-    sound = is_sound(thing)
+def object_problems(thing: Any, at: At, *, sound: bool = False) -> Iterator[Problem]:
+    """All mistakes of a declared object: an element, a law or a signal.
+
+    Parameters: sound, whether its values are right, so that only rules between them are looked at.
+    """
+    sound = sound or is_sound(thing)
     found = [] if sound else list(value_problems(type(thing), vars(thing), at))
     yield from found
     if not found and not sound:
@@ -56,7 +59,7 @@ def _inside(thing: Any, at: At) -> tuple[str, ...]:
 
 # types whose values never change
 PLAIN = frozenset((float, int, bool, str, type(None), Node))
-# in the dictionary of a frozen object: its values are right, and stay so
+# in the dictionary of a frozen object, beside what `memoize` keeps: its values are right, and stay so
 SOUND = "_values_are_right"
 
 

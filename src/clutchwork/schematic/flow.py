@@ -11,11 +11,9 @@ from typing import Any
 import numpy as np
 
 from clutchwork.base.classes import dataclass
-from clutchwork.declare.node import Signal
 from clutchwork.declare.schema import Role
 from clutchwork.schematic.diagram import Thing
 from clutchwork.schematic.symbols.symbol import LEFT, RIGHT
-from clutchwork.signals.bases.extremes import extremes
 
 TRUNK, BRANCH = 0.2, 0.8  # what being on the way from source to load weighs, and what the current at most
 
@@ -29,31 +27,11 @@ class Flow:
 
 
 def drives(element: Any) -> bool | None:
-    """Whether an element at one shaft drives it (True), loads it (False), or does neither."""
-    if element.role is Role.MOTION:
-        return True
-    if element.role is not Role.TORQUE or (hasattr(element, "friction") and element.friction is not None):
-        return None
-    values = _torques(element)
-    if not values:
-        return None
-    return max(values) > 0.0 and max(values) >= -min(values)
-
-
-def _torques(element: Any) -> list[float]:
+    """Whether an element at one shaft drives or loads it; None where it does neither, or has a mistake."""
     with suppress(Exception):
-        if hasattr(element, "nominal_torque"):
-            return [float(element.nominal_torque)]
-        given = getattr(element, "torque", None)
-        if element.kind == "resisting_torque":
-            return [-1.0]
-        if isinstance(given, Real):
-            return [float(given)]
-        if isinstance(given, Signal):
-            return [reached.value for reached in extremes(given)] or [1.0]
-        if given is not None:
-            return [float(y) for _, y in given] if hasattr(given, "__len__") else [1.0]
-    return []
+        made: bool | None = element.drives()
+        return made
+    return None
 
 
 def flow(nodes: list[Thing], elements: list[Thing]) -> Flow:

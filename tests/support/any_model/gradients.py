@@ -111,14 +111,19 @@ def campaign(first: int, models: int, count: int) -> Iterator[tuple[int, Tally]]
             yield seed, Tally(wrong=[f"{type(error).__name__}: {str(error)[:200]}"])
 
 
-def main() -> None:
-    """Run it."""
-    parser = argparse.ArgumentParser(description=__doc__)
+def arguments(about: str | None) -> argparse.Namespace:
+    """What the command line asks of a comparison of derivatives."""
+    parser = argparse.ArgumentParser(description=about)
     parser.add_argument("--models", type=int, default=100)
     parser.add_argument("--seed", type=int, default=0)
     parser.add_argument("--numbers", type=int, default=5, help="numbers of each model")
-    given = parser.parse_args()
     warnings.simplefilter("ignore")
+    return parser.parse_args()
+
+
+def main() -> None:
+    """Run it."""
+    given = arguments(__doc__)
     total: Counter[str] = Counter()
     reasons: dict[str, list[int]] = defaultdict(list)
     for seed, tally in campaign(given.seed, given.models, given.numbers):

@@ -13,9 +13,9 @@ class Heating(Component):
 
     work: ClassVar[Work] = Work.LOSS
 
-    heat: ThermalNode | None = port("thermal node that takes its heat", default=None, domain="thermal", last=True)
+    heat: ThermalNode | None = port("thermal node that takes its heat", default=None, domain="thermal", last=2)
     heat_share: float = option(
-        "1", "share of its heat; the rest is not tracked", default=1.0, at_least=0.0, at_most=1.0, last=True
+        "1", "share of its heat; the rest is not tracked", default=1.0, at_least=0.0, at_most=1.0, last=2
     )
 
     def heat_path(self) -> HeatPath | None:

@@ -9,7 +9,7 @@ from math import atan, cos, pi, tan
 from typing import Any, ClassVar
 
 from clutchwork.declare import Found, Law, Way, family, numbers, option, param
-from clutchwork.elements.bases.heating import Heating
+from clutchwork.elements.bases.contacts import Sticking
 from clutchwork.laws.coulomb import Coulomb
 
 # the one direction of such a contact
@@ -19,16 +19,11 @@ COLUMNS = ("speed", "forward efficiency", "backward efficiency", "forward fricti
 
 
 @family
-class Meshing(Heating):
+class Meshing(Sticking):
     """A gear row with friction: its capacity follows the torque of the row."""
 
     # slides with the capacity itself
     friction: ClassVar[Law] = Coulomb(static=1.0, kinetic=1.0)  # type: ignore[misc]
-
-    tolerance: float = option(
-        "rad/s", "slip below which it may lock; 0: at exactly zero", default=0.0, at_least=0.0, units=("m/s",)
-    )
-    locked: bool = option("1", "locked at the start, by an impulse if necessary", default=False, flag=True)
 
     def rows(self) -> list[dict[str, Fraction]]:
         """Coefficients of the speeds whose sum is zero; the torque of the first row is the load."""
@@ -57,7 +52,7 @@ def table_problems(name: str, rows: Sequence[Sequence[float]]) -> Found:
 
 
 @family
-class Lossy(Heating):
+class Lossy(Sticking):
     """A gear whose users give its losses by efficiencies or by a table."""
 
     efficiency: float | None = param(
@@ -77,8 +72,9 @@ class Lossy(Heating):
         default=None,
         rows=True,
     )
-    tolerance: float = option("rad/s", "slip below which it may lock; 0: at exactly zero", default=0.0, at_least=0.0)
-    locked: bool = option("1", "locked at the start, by an impulse if necessary", default=False, flag=True)
+    tolerance: float = option(
+        "rad/s", "slip below which it may lock; 0: at exactly zero", default=0.0, at_least=0.0, last=1
+    )
 
     def loss_problems(self) -> Found:
         """Losses that are given twice, or that make a gear drive."""
@@ -107,8 +103,7 @@ class Lossy(Heating):
 
     def mesh(self) -> dict[str, Any]:
         """What the contact in its mesh has of it."""
-        own = ("tolerance", "locked", "heat", "heat_share")
-        return {"loss_table": self.loss_rows(), **{name: getattr(self, name) for name in own}}
+        return {"loss_table": self.loss_rows(), **self.sticking()}
 
 
 def screw_efficiencies(lead_angle: float, coefficient: float, normal_angle: float) -> tuple[float, float]:

@@ -46,6 +46,10 @@ class PrescribedMotion(Component):
         """
         raise NotImplementedError
 
+    def drives(self) -> bool:
+        """Whatever torque it takes."""
+        return True
+
     def begins_with_shaft(self) -> bool:
         """Whether its speed begins with that of the shaft."""
         return self.integrates

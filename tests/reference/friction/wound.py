@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from math import copysign, exp, tanh
 
-from support.friction.law import Array, Branch, Guard, Law
+from reference.friction.law import Array, Branch, Guard, Law
 
 
 @dataclass(frozen=True)

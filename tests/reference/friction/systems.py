@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from support.friction.law import Array, Branch, Law
+from reference.friction.law import Array, Branch, Law
 
 Course = Callable[[float], float]
 

@@ -6,7 +6,7 @@ from typing import Any
 
 import numpy as np
 
-from support.friction.solve import Solution
+from reference.friction.solve import Solution
 
 # over full scale: asked for
 AGREE = 1e-6

@@ -5,8 +5,8 @@ from __future__ import annotations
 from dataclasses import dataclass
 from math import copysign, pi, sin
 
-from support.friction.curve import Curve
-from support.friction.law import Array, Branch, Law
+from reference.friction.curve import Curve
+from reference.friction.law import Array, Branch, Law
 
 
 @dataclass(frozen=True)

@@ -7,8 +7,8 @@ from math import copysign
 
 import numpy as np
 
-from support.friction.curve import Curve
-from support.friction.law import Array, Branch, Guard, Law
+from reference.friction.curve import Curve
+from reference.friction.law import Array, Branch, Guard, Law
 
 
 @dataclass(frozen=True)

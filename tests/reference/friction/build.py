@@ -5,12 +5,12 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import Any
 
-from support.friction.bristle import Dahl, ElastoPlastic, LuGre
-from support.friction.curve import Curve
-from support.friction.law import Law
-from support.friction.maxwell import GMS, Leuven
-from support.friction.smooth import NaiveSign, RegularisedStribeck, Tanh
-from support.friction.wound import Mykhalevych
+from reference.friction.bristle import Dahl, ElastoPlastic, LuGre
+from reference.friction.curve import Curve
+from reference.friction.law import Law
+from reference.friction.maxwell import GMS, Leuven
+from reference.friction.smooth import NaiveSign, RegularisedStribeck, Tanh
+from reference.friction.wound import Mykhalevych
 
 
 def _curve(law: Any) -> Curve:

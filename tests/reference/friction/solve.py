@@ -10,8 +10,8 @@ import numpy as np
 from scipy.integrate import Radau
 from scipy.optimize import brentq
 
-from support.friction.law import Array, Guard
-from support.friction.systems import Course, Moved, Pushed
+from reference.friction.law import Array, Guard
+from reference.friction.systems import Course, Moved, Pushed
 
 
 class Hit(NamedTuple):

@@ -7,7 +7,7 @@ from math import pi
 from typing import Any
 
 import clutchwork as cw
-from support.friction.histories import Drift
+from reference.friction.histories import Drift
 
 # far below what the comparisons ask for
 TIGHT: dict[str, Any] = {"rtol": 1e-10, "atol": 1e-12}
