@@ -13,7 +13,7 @@ import pytest
 
 import clutchwork as cw
 from clutchwork.assembly.during_runs import INERTIA
-from clutchwork.assembly.provenance import Parameter, differing
+from clutchwork.assembly.provenance import SystemParameter, differing
 from clutchwork.base.errors import ModelError
 from clutchwork.declare.schema import Role
 from clutchwork.elements.mesh import Mesh
@@ -33,7 +33,7 @@ def anew(system: cw.System, changes: dict[str, Any]) -> cw.System | None:
         return None
 
 
-def wrong(system: cw.System, one: Parameter, share: float) -> str:
+def wrong(system: cw.System, one: SystemParameter, share: float) -> str:
     """What of an entry is not so where a number is another one."""
     value = float(one.value) + share * (abs(float(one.value)) or 1.0)
     made = anew(system, {one.name: value})
@@ -54,7 +54,7 @@ def wrong(system: cw.System, one: Parameter, share: float) -> str:
     return f"{one.name} at {value:g} {found}" if found else ""
 
 
-def numbers(system: cw.System) -> list[Parameter]:
+def numbers(system: cw.System) -> list[SystemParameter]:
     """All entries that are a number which may have any value between two others."""
     known = [one for one in system.parameters.values() if isinstance(one.value, Real)]
     return [one for one in known if not (isinstance(one.value, bool) or one._spec.whole or one._spec.fixed)]
@@ -139,7 +139,7 @@ def test_the_table_says_what_a_run_takes(cls: Any) -> None:
             assert taken == ("" if one.stays is None else one.stays.why), one.name
 
 
-def _given(one: Parameter) -> list[float]:
+def _given(one: SystemParameter) -> list[float]:
     """The value of the System beside."""
     assert one._beside is not None
     return [float(one._beside.parameters[one.name].value)]
@@ -164,7 +164,7 @@ def test_what_a_composite_computes_has_no_derivative_in_the_table() -> None:
     assert one.derivative is None
 
 
-# -------------------------------------------------------------------------------------- what is made where it is asked for
+# -------------------------------------------------------------------------------- what is made where it is asked for
 
 
 @pytest.mark.parametrize("cls", [Mesh, RackMesh])

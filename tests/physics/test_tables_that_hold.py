@@ -5,6 +5,8 @@ docs/theory/events.md, rule 12.
 
 from __future__ import annotations
 
+from itertools import pairwise
+
 import numpy as np
 import pytest
 
@@ -22,9 +24,7 @@ def law(kind: str, points: Points, interpolation: str, temperature: cw.Table | N
     places = [x for x, _ in points]
     if kind == "table":
         kinetic = [(x, 0.01) for x in places]
-        return cw.TemperatureTable(
-            static=points, kinetic=kinetic, temperature=temperature, interpolation=interpolation
-        )
+        return cw.TemperatureTable(static=points, kinetic=kinetic, temperature=temperature, interpolation=interpolation)
     return cw.FrictionMap(
         temperatures=places,
         speeds=[0.0, 50.0, 100.0],
@@ -68,7 +68,7 @@ def lets_go(points: Points, temperature: cw.Table, torque: float) -> float | Non
     """When the line through the points falls below the torque, exact; None: never."""
     (_, first), (_, last) = temperature.points
     along = points if last > first else points[::-1]
-    for (x, y), (next_x, next_y) in zip(along, along[1:], strict=False):
+    for (x, y), (next_x, next_y) in pairwise(along):
         if FORCE * next_y < torque <= FORCE * y:
             place = x + (next_x - x) * (torque / FORCE - y) / (next_y - y)
             return END * (place - first) / (last - first)

@@ -45,7 +45,7 @@ OF_SIGNALS = {"input_first", "input_count", "input_period", "input_value", "segm
 
 
 @dataclass(frozen=True, eq=False)
-class Parameter:
+class SystemParameter:
     """Something of a driveline that may be changed, by its name in `System.changed`."""
 
     name: str
@@ -109,7 +109,7 @@ class Parameter:
         return made is not None and _is_value(made, differing(self._system, made), self.reach, value)
 
 
-class Parameters(Mapping[str, Parameter]):
+class SystemParameters(Mapping[str, SystemParameter]):
     """Everything of a System that may be changed, by name; each is looked at when it is first asked for."""
 
     def __init__(self, system: System) -> None:
@@ -117,7 +117,7 @@ class Parameters(Mapping[str, Parameter]):
             raise ModelError([UNKNOWN_SOURCE])
         self._system, self._source = system, system.source
 
-    def __getitem__(self, name: str) -> Parameter:
+    def __getitem__(self, name: str) -> SystemParameter:
         if target(owners_of(self._system), name) is None:
             raise KeyError(f"{name!r} is nothing that may be changed{near(name, self)}")
         return parameter(self._system, name)
@@ -129,11 +129,11 @@ class Parameters(Mapping[str, Parameter]):
         return sum(1 for _ in self)
 
     def __repr__(self) -> str:
-        return f"<Parameters: {', '.join(self)}>"
+        return f"<SystemParameters: {', '.join(self)}>"
 
 
 @memoize
-def parameter(system: System, name: str) -> Parameter:
+def parameter(system: System, name: str) -> SystemParameter:
     """One of them; its name must be known."""
     aim: Any = target(owners_of(system), name)
     value, spec = field_of(aim)
@@ -144,7 +144,7 @@ def parameter(system: System, name: str) -> Parameter:
     is_word = is_number and all(_is_value(made, there, reach, value) for value, made, there in found)
     inputs = next((inputs for there, made, _ in found if (inputs := _inputs(system, made, aim, there))), ())
     beside = next((made for _, made, _ in found), None)
-    return Parameter(name, value, unit_of(aim), bounds_of(spec), reach, is_word, inputs, spec, system, beside)
+    return SystemParameter(name, value, unit_of(aim), bounds_of(spec), reach, is_word, inputs, spec, system, beside)
 
 
 def is_shared(aim: Target) -> bool:
@@ -190,10 +190,10 @@ def _others(value: Any, spec: Spec) -> Iterator[Any]:
     if isinstance(value, bool) or spec.choices:
         yield from (other for other in (spec.choices or (True, False)) if other != value)
     elif isinstance(value, Real):
-        now, scale = float(value), abs(float(value)) or 1.0
-        whole = isinstance(value, int) and (spec.whole or spec.fixed)
-        found = (value + 1, value - 1) if whole else tuple(now + share * scale for share in PROBES)
-        yield from (there for there in found if spec.allows(there))
+        number: Any = value
+        whole, scale = isinstance(number, int) and (spec.whole or spec.fixed), abs(float(number)) or 1.0
+        steps = (1, -1) if whole else tuple(share * scale for share in PROBES)
+        yield from (number + step for step in steps if spec.allows(number + step))
     elif isinstance(value, Signal) and type(value).segments is Table.segments:
         yield from map(Table, _tables(vars(value)["points"]))
     elif isinstance(value, Signal) and spec.what in SIGNALS:

@@ -16,7 +16,7 @@ from clutchwork.assembly.assemble import assembled
 from clutchwork.assembly.changes import GROUPS, UNKNOWN_SOURCE, Quick, changed, quick
 from clutchwork.assembly.dependence import dependent_sets
 from clutchwork.assembly.patches import Numbered, numbered
-from clutchwork.assembly.provenance import Parameters
+from clutchwork.assembly.provenance import SystemParameters
 from clutchwork.assembly.records import TYPES, Array, Gearing, Input, Link, frozen
 from clutchwork.assembly.sparse import dense, entries
 from clutchwork.assembly.storage_bounds import rooms
@@ -224,9 +224,9 @@ class System:
         return made
 
     @property
-    def parameters(self) -> Parameters:
+    def parameters(self) -> SystemParameters:
         """All that may be changed, by name: its value, unit and bounds, the words that it reaches, and when it may."""
-        return Parameters(self)
+        return SystemParameters(self)
 
     @cached_property
     def starts(self) -> Mapping[str, int]:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import field, replace
-from functools import cached_property, partial
+from functools import partial
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 from clutchwork.base.classes import dataclass
 from clutchwork.base.errors import ModelError
 from clutchwork.gradients.finite_differences import Bent, Rebuilt, slope
-from clutchwork.gradients.system_words import WordStructure, finite, made, words_made, words_of
+from clutchwork.gradients.system_words import WordStructure, finite, made, words_of
 from clutchwork.results.gradient import NoGradient
 
 if TYPE_CHECKING:
@@ -90,20 +90,13 @@ class Assembled:
         return True
 
     def _beside(self, system: System, x: Array) -> Array:
-        words = words_made(system, self.parameters, x)
+        words = words_of(made(system, self.parameters, x))
         if not self.structure.is_that_of(words):
             raise Rebuilt
         return finite(words)
 
     def _pinned(self, x: Array) -> System:
         """The System at a point, with its independent speeds asked for, so that values beside do not choose others."""
-        return self._pinned_start if np.array_equal(x, self.start) else self._with_speeds(x)
-
-    @cached_property
-    def _pinned_start(self) -> System:
-        return self._with_speeds(self.start)
-
-    def _with_speeds(self, x: Array) -> System:
         system = self.system if np.array_equal(x, self.start) else made(self.system, self.parameters, x)
         asked = replace(system, wanted=system.independent)
         try:

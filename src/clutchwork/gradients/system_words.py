@@ -33,11 +33,6 @@ def made(system: System, parameters: Sequence[Tunable], x: Array) -> System:
         return system.changed(changes(system, parameters, x))
 
 
-def words_made(system: System, parameters: Sequence[Tunable], x: Array) -> Array:
-    """The words of a System with other values, as those of `made`."""
-    return words_of(made(system, parameters, x))
-
-
 def finite(words: Array) -> Array:
     """Words without those that are not a number, as a parameter that is left out."""
     return np.where(np.isfinite(words), words, 0.0)

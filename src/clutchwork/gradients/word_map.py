@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from clutchwork.assembly.provenance import PROBES, Parameter, parameter
+from clutchwork.assembly.provenance import PROBES, SystemParameter, parameter
 from clutchwork.base.classes import dataclass
 from clutchwork.base.errors import ModelError
 from clutchwork.gradients.assembled import Assembled
@@ -53,7 +53,7 @@ class Slopes(NamedTuple):
 class Chart:
     """How the words of one structure of a driveline follow from numbers."""
 
-    fixed: dict[int, Parameter]  # numbers that words are, or are sums of: derivatives are the same everywhere
+    fixed: dict[int, SystemParameter]  # numbers that words are, or are sums of: derivatives are the same everywhere
     tables: tuple[TableWords, ...]
     assembled: Assembled  # all others
 
@@ -71,7 +71,7 @@ class Chart:
         """Look at how the words of a System, which has these values, follow from them."""
         structure = WordStructure.of(system)
         known = _known(system, structure, parameters, x)
-        fixed, tables = dict[int, Parameter](), list[TableWords]()
+        fixed, tables = dict[int, SystemParameter](), list[TableWords]()
         for name, own in known.items():
             free = [(number, one) for number, one in enumerate(parameters) if one.field == name]
             # what goes into a word together with others is assembled, but sums stand beside each other
@@ -116,7 +116,9 @@ class Chart:
         return Slopes(places, matrix)
 
 
-def _known(system: System, structure: WordStructure, parameters: Sequence[Tunable], x: Array) -> dict[str, Parameter]:
+def _known(
+    system: System, structure: WordStructure, parameters: Sequence[Tunable], x: Array
+) -> dict[str, SystemParameter]:
     """What numbers reach where all are others: a product of which one factor is zero depends on both."""
     moves = np.array([_room(one, value) for one, value in zip(parameters, x.tolist(), strict=True)])
     beside = _beside(system, structure, parameters, x, moves)
@@ -127,7 +129,7 @@ def _known(system: System, structure: WordStructure, parameters: Sequence[Tunabl
     return {one.field: parameter(beside or system, one.field) for one in parameters}
 
 
-def _is_same(one: Parameter, other: Parameter) -> bool:
+def _is_same(one: SystemParameter, other: SystemParameter) -> bool:
     """Whether a number, which may be at a kink in one of two Systems, reaches the same words in both."""
     return other.derivative is not None and np.array_equal(one.words, other.words)
 
