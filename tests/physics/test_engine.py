@@ -3,12 +3,15 @@
 from __future__ import annotations
 
 import math
+import re
 
 import numpy as np
 import pytest
 from scipy.integrate import solve_ivp
 
 import clutchwork as cw
+from clutchwork.elements.engine import RIPPLE_BAND
+from support.project import ROOT
 
 FINE = {"rtol": 1e-9, "atol": 1e-11}
 FULL, DRAG = [(80.0, 100.0), (200.0, 220.0), (400.0, 240.0), (600.0, 180.0)], [(0.0, -20.0), (600.0, -60.0)]
@@ -206,3 +209,9 @@ def test_mistakes_are_named(values, words):
     d.add(cw.Engine("e", shaft=shaft, **given))
     with pytest.raises(cw.ModelError, match=words):
         d.assemble()
+
+
+def test_the_band_of_the_ripple_is_that_of_the_core():
+    # the composite has a knot of its map where the ripple of the part ends
+    header = (ROOT / "cpp/include/clutchwork/elements/engine_torque.hpp").read_text(encoding="utf-8")
+    assert [float(x) for x in re.findall(r"ripple_band = ([\d.]+);", header)] == [RIPPLE_BAND]

@@ -18,7 +18,7 @@ from clutchwork.assembly.sparse import sparse
 from clutchwork.base.errors import ModelError
 from clutchwork.declare.core import number
 from clutchwork.declare.layout import FIELDS
-from clutchwork.declare.node import is_reference
+from clutchwork.declare.node import TabledComposite, is_reference
 from clutchwork.declare.rational import ONE, Row, plus, product
 from clutchwork.declare.schema import Role, inputs
 from clutchwork.declare.wording import path_of
@@ -89,7 +89,9 @@ def assembled(whole: Model, independent: Sequence[str] = (), found: Findings | N
         "processes": shared.processes,
         "inputs": tuple(wires.inputs),
         "links": tuple(wires.links),
-        "gearboxes": tuple(table for one in whole.elements if (table := one.shift_table()) is not None),
+        "gearboxes": tuple(
+            table for one in whole.elements if isinstance(one, TabledComposite) and (table := one.shift_table())
+        ),
         "sums": parts.sums,
         "independent": tuple(model.nodes[n].name for n in made.independent),
         "places": pools.places,

@@ -270,33 +270,9 @@ class Component(Element):
         """The elements that its tables of elements describe, with mistakes or without."""
         return ()
 
-    @classmethod
-    def entry_kinds(cls, values: Mapping[str, Any]) -> Mapping[str, str]:  # noqa: ARG003, most have no tables
-        """Kind of each element that its tables may describe, "shift.A" -> "clutch", where they do not say another.
-
-        Parameters: values, of its fields, some of which may be missing.
-        """
-        return {}
-
     def held(self) -> Mapping[str, Part]:
         """Parts whose values are changed as if they were elements of the driveline, by name within it."""
         return {}
-
-    def with_held(self, name: str, values: Mapping[str, Any]) -> Component:  # noqa: ARG002, most hold nothing
-        """Itself with other values of the fields of such a part."""
-        return self
-
-    def content(self, name: str) -> Mapping[str, Any]:  # noqa: ARG002, most have none
-        """What a field of the sort "data" leads to, as a file holds it."""
-        return {}
-
-    def shift_table(self) -> ShiftTable | None:
-        """Gears by the contacts that are closed in them, of a gearbox."""
-        return None
-
-    def grips(self) -> Iterable[tuple[str, Node, Node]]:
-        """Parts that are closed at the start, each with the two shafts that then turn together."""
-        return ()
 
     def part(self, name: str) -> Element | ThermalNode | Node:
         """A part by its name within this component; KeyError when there is none."""
@@ -359,6 +335,38 @@ class Component(Element):
     def fault_warning(self) -> str:
         """What to warn of when a fault of it is triggered, such as "cannot transmit"; empty: nothing."""
         return ""
+
+
+@dataclass(frozen=True, repr=False)
+class TabledComposite(Component):
+    """A composite with fields that are tables of elements, such as a gearbox with its shift elements.
+
+    Its `entries` are what these tables describe, and it holds them, so that they are changed by their names within it.
+    """
+
+    @classmethod
+    def entry_kinds(cls, values: Mapping[str, Any]) -> Mapping[str, str]:
+        """Kind of each element that its tables may describe, "shift.A" -> "clutch", where they do not say another.
+
+        Parameters: values, of its fields, some of which may be missing.
+        """
+        raise NotImplementedError
+
+    def with_held(self, name: str, values: Mapping[str, Any]) -> Component:
+        """Itself with other values of the fields of a part that it holds."""
+        raise NotImplementedError
+
+    def content(self, name: str) -> Mapping[str, Any]:
+        """What a field of the sort "data" leads to, as a file holds it."""
+        raise NotImplementedError
+
+    def shift_table(self) -> ShiftTable | None:
+        """Gears by the contacts that are closed in them, of a gearbox."""
+        return None
+
+    def grips(self) -> Iterable[tuple[str, Node, Node]]:
+        """Parts that are closed at the start, each with the two shafts that then turn together."""
+        return ()
 
 
 @dataclass(frozen=True, repr=False)

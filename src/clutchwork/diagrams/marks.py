@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from typing import NamedTuple
 
 from clutchwork.diagrams.letters import width_of
@@ -114,12 +113,3 @@ class Pen:
         """A line of text; nothing where it is empty."""
         if text:
             self.marks.append(Label(x, y, text, size, colour, bold, anchor))
-
-
-def around(marks: Sequence[Mark]) -> Rect:
-    """What marks cover together."""
-    boxes = [mark.box for mark in marks]
-    return Rect(
-        min(box.left for box in boxes), min(box.low for box in boxes),
-        max(box.right for box in boxes), max(box.high for box in boxes),
-    )  # fmt: skip

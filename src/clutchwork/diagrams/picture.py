@@ -9,7 +9,8 @@ from pathlib import Path
 from clutchwork.base.paths import fitting
 from clutchwork.base.writing import put
 from clutchwork.diagrams.letters import FONT
-from clutchwork.diagrams.marks import PAPER, Disc, Label, Mark, Polyline, around
+from clutchwork.diagrams.marks import PAPER, Disc, Label, Mark, Polyline
+from clutchwork.schematic.pen import around
 
 MARGIN = 12.0
 

@@ -20,6 +20,7 @@ from clutchwork.declare import (
     Part,
     Role,
     ShiftTable,
+    TabledComposite,
     component,
     data,
     elements,
@@ -50,7 +51,7 @@ EXAMPLE: Any = {
 
 
 @component(Role.COMPOSITE)
-class Transmission(Heating):
+class Transmission(TabledComposite, Heating):
     """A whole gearbox, from its teeth and its shift table: each member a shaft, each set a gear, each element a clutch.
 
     Use it for automatic gearboxes, hubs and power splits. The gearbox is one of the catalogue, "zf-8hp70", a file, or a

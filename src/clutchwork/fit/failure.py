@@ -61,3 +61,14 @@ def rising(rows: dict[str, NDArray[np.float64]]) -> str:
     """What to say where times do not rise and another row does."""
     found = [name for name, row in rows.items() if len(row) > 1 and np.all(np.diff(row) > 0.0)]
     return f"; {found[0]} rises: likely time and {found[0]} are swapped" if found else ""
+
+
+def numbers_of(name: str, given: Any) -> NDArray[np.float64]:
+    """A row of numbers."""
+    try:
+        found = np.array(given, dtype=float)
+    except (TypeError, ValueError):
+        raise FitError(name, "contains something that is not a number", "give a row of numbers") from None
+    if found.ndim != 1:
+        raise FitError(name, f"has {found.ndim} dimensions", "give a row of numbers")
+    return found

@@ -8,12 +8,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from clutchwork.base.classes import dataclass
-from clutchwork.fit.failure import FitError, rising
+from clutchwork.fit.failure import FitError, numbers_of, rising
 
 Array = NDArray[np.float64]
 
 FEWEST = 5
-GIVE_ROW = "give a one-dimensional array of numbers"
 
 
 @dataclass(frozen=True, eq=False)
@@ -42,11 +41,11 @@ def measurement(
     Parameters: time [s], rising; slip [rad/s or m/s]; torque [N m or N], positive with the slip or against it; load
     [N m or N] and temperature [K], one number or one for each sample.
     """
-    rows = {"time": _row("time", time), "slip": _row("slip", slip), "torque": _row("torque", torque)}
+    rows = {"time": numbers_of("time", time), "slip": numbers_of("slip", slip), "torque": numbers_of("torque", torque)}
     count = len(rows["time"])
     for name, value, unit in (("load", load, "N m"), ("temperature", temperature, "K")):
         if name == "load" or value is not None:
-            rows[name] = np.full(count, _number(name, value, unit)) if np.ndim(value) == 0 else _row(name, value)
+            rows[name] = np.full(count, _number(name, value, unit)) if np.ndim(value) == 0 else numbers_of(name, value)
     for name, row in rows.items():
         if len(row) != count:
             raise FitError(name, f"has {len(row)} values, time has {count}", "give one value for each instant")
@@ -57,16 +56,6 @@ def measurement(
     torque = -rows["torque"] if turned else rows["torque"]
     time, slip, load = rows["time"] - rows["time"][0], rows["slip"], rows["load"]
     return Measurement(time, slip, torque, load, translation, turned, rows.get("temperature"))
-
-
-def _row(name: str, values: Any) -> Array:
-    try:
-        row = np.array(values, dtype=float)
-    except (TypeError, ValueError):
-        raise FitError(name, "contains something that is not a number", GIVE_ROW) from None
-    if row.ndim != 1:
-        raise FitError(name, f"has {row.ndim} dimensions", GIVE_ROW)
-    return row
 
 
 def _number(name: str, value: Any, unit: str) -> float:

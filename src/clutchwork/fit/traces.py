@@ -12,7 +12,7 @@ from clutchwork.base.classes import dataclass
 from clutchwork.base.errors import near
 from clutchwork.base.quote import quote
 from clutchwork.declare.quantity import QuantityError, scale_to_si
-from clutchwork.fit.failure import FitError, rising
+from clutchwork.fit.failure import FitError, numbers_of, rising
 from clutchwork.results.forms import Mode
 
 if TYPE_CHECKING:
@@ -80,7 +80,7 @@ def row(record: Record, name: str, given: Any, unit: str, of: str) -> tuple[Arra
     """
     is_pair = isinstance(given, tuple) and len(given) == 2 and np.ndim(given[0]) == np.ndim(given[1]) == 1
     time, values = given if is_pair else (record.time, given)
-    times, found = _numbers(f"{of}{_of_time(given, name)}", time), _numbers(f"{of}{name}", values)
+    times, found = numbers_of(f"{of}{_of_time(given, name)}", time), numbers_of(f"{of}{name}", values)
     falls = np.flatnonzero(~(np.diff(times) > 0.0)) + 1
     if len(times) < 2 or len(falls):
         where = f" at sample {falls[0]}, {times[falls[0]]:g} s" if len(falls) else ""
@@ -108,23 +108,13 @@ def _of_time(given: Any, name: str) -> str:
     return f"time of {name}" if isinstance(given, tuple) else "time"
 
 
-def _numbers(name: str, given: Any) -> Array:
-    try:
-        found = np.array(given, dtype=float)
-    except (TypeError, ValueError):
-        raise FitError(name, "contains something that is not a number", "give a row of numbers") from None
-    if found.ndim != 1:
-        raise FitError(name, f"has {found.ndim} dimensions", "give a row of numbers")
-    return found
-
-
 def _deviation(record: Record, name: str, values: Array, unit: str, of: str) -> Array | None:
     """Standard deviation of each sample, in SI as it was given."""
     if name not in record.deviation:
         return None
     given = record.deviation[name]
     found = np.full(len(values), given, dtype=float) if np.ndim(given) == 0 and not isinstance(given, str) else None
-    found = _numbers(f"{of}deviation of {name}", given) if found is None else found
+    found = numbers_of(f"{of}deviation of {name}", given) if found is None else found
     if len(found) != len(values) or not np.all((found > 0.0) & (found < np.inf)):
         told = f"of {name} is {quote(given)}"
         raise FitError(f"{of}deviation", told, f"give a number above zero in [{unit}], or one for each sample")

@@ -20,9 +20,9 @@ from clutchwork.declare.node import (
     HeatFlow,
     Law,
     Node,
-    Part,
     Rate,
     Signal,
+    TabledComposite,
     ThermalNode,
     is_reference,
 )
@@ -30,6 +30,7 @@ from clutchwork.declare.schema import Spec, specs
 from clutchwork.declare.to_si import TargetUnit, field_in_si, settled
 from clutchwork.model.findings import findings
 from clutchwork.model.model import Model
+from clutchwork.model.parts import all_parts
 from clutchwork.model.problems import NODE_FIELDS
 from clutchwork.model.thermal import NODE_FIELDS as THERMAL_FIELDS
 from clutchwork.model.thermal import node_kind
@@ -310,7 +311,7 @@ def with_held(
     """
     found = whole if made is None else made
     for name, part in whole.held().items():
-        if id(part) in changes:
+        if id(part) in changes and isinstance(found, TabledComposite):
             found = found.with_held(name, _values_at(part, changes[id(part)]))
     return found
 
@@ -379,18 +380,10 @@ class Renewed:
         found = dict[str, list[Any]]()
         for element in elements:
             new = self.of(element)
-            for part in _inside(new) if new is not element else ():
+            for part in all_parts(new) if new is not element else ():
                 found.setdefault(part.name, []).append(part)
         more = found.keys() != self.parts.keys()
         if more:
             self.parts = found
             self.made.clear()
         return more
-
-
-def _inside(component: Component) -> Iterator[Part]:
-    """Everything that an element is made of, parts of its parts included."""
-    for part in component.parts():
-        yield part
-        if isinstance(part, Component) and part.name != component.name:
-            yield from _inside(part)

@@ -7,6 +7,7 @@ from functools import cached_property
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 from clutchwork.base.classes import dataclass
+from clutchwork.declare.node import TabledComposite
 from clutchwork.declare.wording import of_files
 from clutchwork.model.kinematics import kinematics
 from clutchwork.model.loads import load_problems
@@ -125,7 +126,8 @@ def _find(model: Model, incomplete: Sequence[str]) -> Findings:
         return Findings([*problems, no_shaft()], advice, None)
     # a sensor may be on a shaft that is not there, and moves nothing
     components = [part for part in sound.components if not problems or not isinstance(part, Sensor)]
-    grips = () if problems else tuple(grip for element in model.elements for grip in element.grips())
+    tabled = [] if problems else [element for element in model.elements if isinstance(element, TabledComposite)]
+    grips = tuple(grip for element in tabled for grip in element.grips())
     mechanism = Mechanism((*model.nodes, *sound.nodes), tuple(components), len(sound.nodes), grips)
     try:
         made, wrong = kinematics(mechanism, incomplete=frozenset((*incomplete, *touched)))

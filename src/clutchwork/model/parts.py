@@ -101,6 +101,14 @@ def _pieces(component: Component) -> Iterator[Part]:
             yield from _pieces(part)
 
 
+def all_parts(component: Component) -> Iterator[Part]:
+    """All parts of an element, at every level."""
+    for part in component.parts():
+        yield part
+        if isinstance(part, Component) and part.name != component.name:
+            yield from all_parts(part)
+
+
 def _places(component: Component) -> Iterator[StopTravel]:
     """The position of a stop."""
     if is_stop(component):

@@ -9,14 +9,14 @@ from clutchwork.base.classes import dataclass
 from clutchwork.base.errors import Problem, near
 from clutchwork.base.quote import listed, quote
 from clutchwork.declare import units
-from clutchwork.declare.node import Component, Domain, HeatFlow, Node, Part, Rate, ThermalNode, is_reference
+from clutchwork.declare.node import Component, Domain, HeatFlow, Node, Rate, ThermalNode, is_reference
 from clutchwork.declare.ports import thermal_ports
 from clutchwork.declare.quantity import within
 from clutchwork.declare.schema import Role, Spec, specs
 from clutchwork.declare.wording import path_of
 from clutchwork.model.fields import CHECKS
 from clutchwork.model.numbers import At, number_problems
-from clutchwork.model.parts import Parts, role, state_name
+from clutchwork.model.parts import Parts, all_parts, role, state_name
 
 CAPACITY = Spec("param", "J/K", "heat capacity", above=0.0)
 TEMPERATURE = Spec("param", "K", "temperature at the start", above=0.0)
@@ -98,21 +98,13 @@ class Referents:
         acting = frozenset(c.name for c in parts.components if role(c) in (Role.TORQUE, Role.CONTACT))
         added = {id(thing): thing for thing in (*nodes, *thermal, *elements)}
         inner = dict[str, list[Any]]()
-        for part in (part for element in elements for part in _inside(element)):
+        for part in (part for element in elements for part in all_parts(element)):
             inner.setdefault(part.name, []).append(part)
         return cls(states, acting, added, inner)
 
     def holds(self, target: Any) -> bool:
         """Whether a shaft, node or element was added itself, or is part of one that was."""
         return id(target) in self.added or target in self.parts.get(target.name, ())
-
-
-def _inside(component: Component) -> Iterator[Part]:
-    """All parts of an element, at every level."""
-    for part in component.parts():
-        yield part
-        if isinstance(part, Component) and part.name != component.name:
-            yield from _inside(part)
 
 
 def reference_problems(component: Component, whole: Component, known: Referents) -> Iterator[Problem]:

@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 import warnings
+from collections.abc import Iterable
 from functools import lru_cache
 from math import cos, pi, sin
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 from clutchwork.base.extras import need
 from clutchwork.schematic.look import INK, THIN, MarkStyle
@@ -147,8 +148,8 @@ class SymbolPen:
         self.marks += [mark.moved(x, y) for mark in marks]
 
 
-def around(marks: list[Mark]) -> Rect:
-    """What marks cover together."""
+def around(marks: Iterable[Any]) -> Rect:
+    """What marks of any sort cover together."""
     boxes = [mark.box for mark in marks]
     return Rect(
         min(box.left for box in boxes),

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 from clutchwork.diagrams.letters import width_of
 from clutchwork.diagrams.lever.heights import Hung
 from clutchwork.diagrams.lever.layout import Levers
-from clutchwork.diagrams.marks import GREY, INK, NAME, PAPER, SMALL, Mark, Pen, around
+from clutchwork.diagrams.marks import GREY, INK, NAME, PAPER, SMALL, Mark, Pen
 from clutchwork.diagrams.stick.bodies import Body
 from clutchwork.diagrams.stick.lines import draw_lines
 from clutchwork.diagrams.stick.looks import Scene
@@ -15,6 +15,7 @@ from clutchwork.diagrams.stick.parts import LEGEND, draw_parts
 from clutchwork.diagrams.stick.wheels import ground
 from clutchwork.diagrams.title import draw_legend, draw_title
 from clutchwork.gearbox.gear_set import HOUSING
+from clutchwork.schematic.pen import around
 
 if TYPE_CHECKING:
     from clutchwork.gearbox.definition import Definition

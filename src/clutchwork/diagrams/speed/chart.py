@@ -6,10 +6,10 @@ from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
 from clutchwork.diagrams.letters import width_of
-from clutchwork.diagrams.marks import FAINT, GREY, HELD, IDLE, INK, NAME, POWER, SMALL, Mark, Pen, around
+from clutchwork.diagrams.marks import FAINT, GREY, HELD, IDLE, INK, NAME, POWER, SMALL, Mark, Pen
 from clutchwork.diagrams.power import sources
 from clutchwork.diagrams.title import draw_legend, draw_title
-from clutchwork.schematic.pen import Rect
+from clutchwork.schematic.pen import Rect, around
 
 if TYPE_CHECKING:
     from clutchwork.gearbox.definition import Definition

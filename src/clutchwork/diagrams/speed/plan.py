@@ -13,10 +13,11 @@ from typing import TYPE_CHECKING
 from clutchwork.base.classes import dataclass
 from clutchwork.diagrams.letters import width_of
 from clutchwork.diagrams.lever.points import Lever, levers
-from clutchwork.diagrams.marks import FAINT, GREY, HELD, INK, NAME, POWER, SMALL, Mark, Pen, around
+from clutchwork.diagrams.marks import FAINT, GREY, HELD, INK, NAME, POWER, SMALL, Mark, Pen
 from clutchwork.diagrams.speed.spread import spread
 from clutchwork.diagrams.title import draw_title
 from clutchwork.gearbox.gear_set import HOUSING
+from clutchwork.schematic.pen import around
 
 if TYPE_CHECKING:
     from clutchwork.gearbox.definition import Definition

@@ -4,13 +4,14 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from clutchwork.diagrams.marks import GREY, Mark, Pen, around
+from clutchwork.diagrams.marks import GREY, Mark, Pen
 from clutchwork.diagrams.stick.layout import Layout
 from clutchwork.diagrams.stick.lines import draw_lines
 from clutchwork.diagrams.stick.looks import Scene
 from clutchwork.diagrams.stick.parts import ARROW, LEGEND, draw_parts
 from clutchwork.diagrams.stick.wheels import draw_body, draw_names
 from clutchwork.diagrams.title import draw_legend, draw_title
+from clutchwork.schematic.pen import around
 
 if TYPE_CHECKING:
     from clutchwork.gearbox.definition import Definition

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from clutchwork.schematic.look import BODY, INK, SHAFT, THIN, MarkStyle
+from clutchwork.schematic.look import BODY, INK, MASS, SHAFT, THIN, MarkStyle
 from clutchwork.schematic.pen import SymbolPen
 from clutchwork.schematic.symbols.gears import PAIR, PITCH
 from clutchwork.schematic.symbols.symbol import LEFT, RIGHT, Drawn, Symbol, wall
@@ -48,6 +48,14 @@ def joint(pen: SymbolPen, shown: Drawn) -> None:
         pen.line((0.0, -8.5), (0.0, y), (side * shown.half, y), look=shown.line)
 
 
+def _ends(pen: SymbolPen, shown: Drawn, shaft: float) -> None:
+    """Lines to the shaft, which begins at a place, and to the mass in its guide."""
+    for port, start, look in (("shaft", shaft, SHAFT), ("mass", 14.0, MASS)):
+        side = shown.sides.get(port)
+        if side is not None:
+            pen.line((start if start * side > 0 else 0.0, 0.0), (side * shown.half, 0.0), look=look)
+
+
 def crank(pen: SymbolPen, shown: Drawn) -> None:
     """A crank, its rod and what it moves in a guide."""
     pen.circle(-8.0, 0.0, 7.0, look=BODY)
@@ -58,11 +66,7 @@ def crank(pen: SymbolPen, shown: Drawn) -> None:
     pen.box(6.0, -4.0, 14.0, 4.0, look=MarkStyle(width=1.2))
     for y in (-5.2, 5.2):
         pen.line((3.0, y), (17.0, y), look=THIN)
-    for port, start in (("shaft", -8.0), ("mass", 14.0)):
-        side = shown.sides.get(port)
-        if side is not None:
-            look = SHAFT if port == "shaft" else SHAFT._replace(colour="#0B5D46")
-            pen.line((start if start * side > 0 else 0.0, 0.0), (side * shown.half, 0.0), look=look)
+    _ends(pen, shown, -8.0)
 
 
 def cam(pen: SymbolPen, shown: Drawn) -> None:
@@ -73,11 +77,7 @@ def cam(pen: SymbolPen, shown: Drawn) -> None:
     pen.line((-1.0, 0.0), (14.0, 0.0), look=INK)
     for y in (-2.6, 2.6):
         pen.line((3.0, y), (11.0, y), look=THIN)
-    for port, start in (("shaft", -10.5), ("mass", 14.0)):
-        side = shown.sides.get(port)
-        if side is not None:
-            look = SHAFT if port == "shaft" else SHAFT._replace(colour="#0B5D46")
-            pen.line((start if start * side > 0 else 0.0, 0.0), (side * shown.half, 0.0), look=look)
+    _ends(pen, shown, -10.5)
 
 
 RATIOS = {
