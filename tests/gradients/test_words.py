@@ -13,8 +13,8 @@ from clutchwork.assembly.changes import quick
 from clutchwork.assembly.masses import masses
 from clutchwork.base.errors import ModelError
 from clutchwork.declare.schema import Role
+from clutchwork.gradients.assembled import made, words_of
 from clutchwork.gradients.parameters import changes, parameters
-from clutchwork.gradients.system_words import made, words_of
 from clutchwork.gradients.words import Words
 from clutchwork.model.changes import changed_model
 from support import free_numbers, random_drivelines, random_parts, random_stops, six_speed

@@ -7,7 +7,7 @@ from collections.abc import Iterator
 import numpy as np
 from numpy.typing import NDArray
 
-from clutchwork.gradients.word_map import Chart, Slopes
+from clutchwork.gradients.words import Chart, Slopes
 from clutchwork.model.parts import is_stop
 
 Array = NDArray[np.float64]

@@ -13,7 +13,7 @@ from clutchwork.declare.schema import inputs
 
 if TYPE_CHECKING:
     from clutchwork.assembly.system import System
-    from clutchwork.gradients.word_map import Chart, Slopes
+    from clutchwork.gradients.words import Chart, Slopes
 
 Array = NDArray[np.float64]
 Mask = NDArray[np.bool_]

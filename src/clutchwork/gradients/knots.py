@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from clutchwork.gradients.primal import Knots
-from clutchwork.gradients.word_map import Chart, Slopes
+from clutchwork.gradients.words import Chart, Slopes
 
 if TYPE_CHECKING:
     from clutchwork.assembly.system import System

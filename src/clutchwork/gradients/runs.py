@@ -21,8 +21,7 @@ from clutchwork.gradients.refined import Sharing
 from clutchwork.gradients.signals_at import SignalsAt
 from clutchwork.gradients.steps import NO_STEPS, Steps
 from clutchwork.gradients.task import GradientTask
-from clutchwork.gradients.word_map import Chart, Slopes
-from clutchwork.gradients.words import Words
+from clutchwork.gradients.words import Chart, Slopes, Words
 from clutchwork.results.forms import all_reads
 from clutchwork.results.gradient import NoGradient
 from clutchwork.run.simulation import told

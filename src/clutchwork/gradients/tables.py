@@ -34,6 +34,7 @@ class TableWords:
     begins: Places  # knots at which pieces begin, -1: before the first one
     copies: int  # signals that it is
     places: Places  # words of all starts, values and slopes
+    at_start: Places  # words of the value at 0, one for each signal
 
     @classmethod
     def of(cls, system: System, inputs: Sequence[int], free: Sequence[tuple[int, Tunable]]) -> TableWords | None:
@@ -57,7 +58,8 @@ class TableWords:
         coef = system.starts["segment_coef"] // 8 + 12 * rows
         places = np.concatenate([system.starts["segment_time"] // 8 + rows, coef, coef + 1])
         numbers = np.array([number for number, _ in free])
-        return cls(points, numbers, along, begins, len(inputs), places)
+        at_start = system.starts["input_value"] // 8 + np.array(inputs, dtype=np.int64)
+        return cls(points, numbers, along, begins, len(inputs), places, at_start)
 
     @cached_property
     def _free(self) -> tuple[Places, Places, Places]:
@@ -73,7 +75,14 @@ class TableWords:
 
     def holds(self, x: Array) -> bool:
         """Whether the pieces begin at the same knots for values of all parameters."""
-        return not self.moves_times or np.array_equal(pieces(self.moved(x)), self.begins)
+        points = self.moved(x)
+        rises = bool(np.all(np.diff(points[:, 0]) >= 0.0))
+        return not self.moves_times or (rises and np.array_equal(pieces(points), self.begins))
+
+    def write(self, words: Array, x: Array) -> None:
+        """Write the words for values of all parameters."""
+        numbers, at_start = numbers_of(self.moved(x), self.begins)
+        words[self.places], words[self.at_start] = np.repeat(numbers, self.copies, axis=0).ravel(), at_start
 
     @cached_property
     def moves_times(self) -> bool:
@@ -99,6 +108,17 @@ def pieces(points: Array) -> Places:
     begins = np.flatnonzero(np.diff(points[:, 0]) > 0.0)
     before = [-1] if points[0, 0] > 0.0 else []
     return np.array([*before, *begins.tolist(), count - 1], dtype=np.int64)
+
+
+def numbers_of(points: Array, begins: Places) -> tuple[Array, float]:
+    """Starts, values and slopes of the pieces, and the value at 0."""
+    made, inner = np.zeros((3, len(begins))), begins[_is_sloped(points, begins)]
+    made[:2] = points[np.maximum(begins, 0)].T
+    made[0, begins < 0] = 0.0
+    step = points[inner + 1] - points[inner]
+    made[2, _is_sloped(points, begins)] = step[:, 1] / step[:, 0]
+    now = max(int(np.searchsorted(made[0], 0.0, "right")) - 1, 0)
+    return made, float(made[1, now] + (0.0 - made[0, now]) * made[2, now])
 
 
 def derivatives(points: Array, along: Array, begins: Places) -> Array:

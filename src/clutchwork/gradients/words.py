@@ -5,24 +5,121 @@ docs/theory/gradients.md (10) and (11)
 
 from __future__ import annotations
 
+from bisect import bisect_left
+from collections.abc import Sequence
+from contextlib import suppress
 from dataclasses import field
-from typing import TYPE_CHECKING
+from functools import cached_property
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
+from clutchwork.assembly.provenance import PROBES, SystemParameter, parameter
 from clutchwork.base.classes import dataclass
-from clutchwork.gradients.system_words import made, words_of
-from clutchwork.gradients.word_map import Chart, Slopes
+from clutchwork.base.errors import ModelError
+from clutchwork.gradients.assembled import Assembled, WordStructure, made, words_of
+from clutchwork.gradients.tables import TableWords
 
 if TYPE_CHECKING:
     from clutchwork.assembly.system import System
     from clutchwork.gradients.parameters import Tunable
 
 Array = NDArray[np.float64]
+Places = NDArray[np.int64]
 
 # structures of a driveline that are remembered
 MOST_CHARTS = 8
+
+
+class Slopes(NamedTuple):
+    """Words that change with numbers, and their derivatives: a line for each word, a column for each number."""
+
+    places: Places
+    matrix: Array
+
+    def within(self, first: int, count: int) -> slice:
+        """Lines of the words that change among some that follow each other."""
+        return slice(bisect_left(self.places, first), bisect_left(self.places, first + count))
+
+    def touch(self, first: int, count: int) -> bool:
+        """Whether any of them changes."""
+        return bisect_left(self.places, first) < bisect_left(self.places, first + count)
+
+    def of(self, words: Places) -> Array:
+        """Derivatives of words: a line for each."""
+        made = np.zeros((len(words), self.matrix.shape[1]))
+        at = np.searchsorted(self.places, words)
+        there = np.isin(words, self.places)
+        made[there] = self.matrix[at[there]]
+        return made
+
+
+@dataclass(frozen=True, eq=False)
+class Chart:
+    """How the words of one structure of a driveline follow from numbers."""
+
+    fixed: dict[int, SystemParameter]  # numbers that words are, or are sums of: derivatives are the same everywhere
+    tables: tuple[TableWords, ...]
+    assembled: Assembled  # all others
+
+    @property
+    def bound(self) -> tuple[int, ...]:
+        """Numbers that words are assembled from."""
+        return self.assembled.numbers
+
+    def words_in(self, name: str) -> tuple[int, int]:
+        """The first word of an array of a System, and how many there are."""
+        return self.assembled.system.starts[name] // 8, self.assembled.system.arrays[name].size
+
+    @classmethod
+    def of(cls, system: System, parameters: tuple[Tunable, ...], x: Array) -> Chart:
+        """Look at how the words of a System, which has these values, follow from them."""
+        structure = WordStructure.of(system)
+        known = _known(system, structure, parameters, x)
+        fixed, tables = dict[int, SystemParameter](), list[TableWords]()
+        for name, own in known.items():
+            free = [(number, one) for number, one in enumerate(parameters) if one.field == name]
+            # what goes into a word together with others is assembled, but sums stand beside each other
+            beside = [one.words for one in known.values() if one is not own and not (own.is_sum and one.is_sum)]
+            if np.isin(own.words, np.concatenate([own.words[:0], *beside])).any():
+                continue
+            if own.derivative is not None and _is_same(own, parameter(system, name)):
+                fixed[free[0][0]] = own
+            elif own.is_signal and free[0][1].places:
+                found = TableWords.of(system, own.inputs, free)
+                tables += [found] if found else []
+        used = {*fixed, *(number for table in tables for number in table.numbers.tolist())}
+        rest = tuple(number for number in range(len(x)) if number not in used)
+        return cls(fixed, tuple(tables), Assembled(system, structure, parameters, x, rest))
+
+    def holds(self, words: Array, x: Array) -> bool:
+        """Whether the words at a point are of this structure, and follow alike: at zero a number may be at a kink."""
+        zeros = ((one == 0.0)[list(self.fixed)] for one in (x, self.assembled.start))
+        alike = np.array_equal(*zeros) and self.assembled.structure.is_that_of(words)
+        return alike and all(table.holds(x) for table in self.tables)
+
+    def slopes(self, x: Array) -> Slopes:
+        """Derivatives of the words at a point; NoGradient where there is none."""
+        return self._same or self._slopes(x)
+
+    @cached_property
+    def _same(self) -> Slopes | None:
+        """Derivatives that are the same everywhere: nothing is assembled, and no knot moves in time."""
+        free = self.bound or any(table.moves_times for table in self.tables)
+        return None if free else self._slopes(self.assembled.start)
+
+    def _slopes(self, x: Array) -> Slopes:
+        more = self.assembled.slopes(x)
+        known, own = np.flatnonzero(more.any(axis=1)), (part.words for part in self.fixed.values())
+        places = np.unique(np.concatenate([known, *own, *(table.places for table in self.tables)]))
+        matrix = np.zeros((len(places), len(x)))
+        for number, part in self.fixed.items():
+            matrix[np.searchsorted(places, part.words), number] = part.derivative
+        for table in self.tables:
+            matrix[np.ix_(np.searchsorted(places, table.places), table.numbers)] = table.slopes(x)
+        matrix[np.searchsorted(places, known)[:, None], list(self.bound)] = more[known]
+        return Slopes(places, matrix)
 
 
 @dataclass(frozen=True, eq=False)
@@ -35,17 +132,37 @@ class Words:
 
     def at(self, x: Array) -> tuple[Chart, Array]:
         """The words at a point, and how they follow from it; ModelError for values that the driveline refuses."""
+        for chart in self._charts:
+            words = self._written(chart, x)
+            if words is not None:
+                return chart, words
         system = self.assembled(x)
-        words = words_of(system)
-        chart = next((one for one in self._charts if one.holds(words, x)), None)
-        if chart is None:
-            chart = Chart.of(system, self.parameters, x)
-            self._charts[:] = [chart, *self._charts[: MOST_CHARTS - 1]]
-        return chart, words
+        chart = Chart.of(system, self.parameters, x)
+        self._charts[:] = [chart, *self._charts[: MOST_CHARTS - 1]]
+        return chart, words_of(system)
+
+    def _written(self, chart: Chart, x: Array) -> Array | None:
+        """The words at a point: tables are written into those of the other numbers; None where there are others."""
+        rest = np.setdiff1d(np.arange(len(x)), [number for table in chart.tables for number in table.numbers])
+        try:
+            others = [self.parameters[number] for number in rest]
+            words = words_of(made(self.system, others, x[rest]) if others else self.system)
+        except ModelError:
+            return None
+        if not chart.holds(words, x) or np.any(x < self._bounds[0]) or np.any(x > self._bounds[1]):
+            return None
+        words = words.copy() if chart.tables else words
+        for table in chart.tables:
+            table.write(words, x)
+        return words
+
+    @cached_property
+    def _bounds(self) -> tuple[Array, Array]:
+        return np.array([one.lower for one in self.parameters]), np.array([one.upper for one in self.parameters])
 
     def bytes_at(self, x: Array) -> bytes:
         """The bytes of the System at a point."""
-        return self.assembled(x).to_bytes()
+        return self.at(x)[1].tobytes()
 
     def slopes_at(self, x: Array) -> Slopes:
         """Derivatives of the words at a point; NoGradient where a number has none."""
@@ -53,8 +170,38 @@ class Words:
 
     def assembled(self, x: Array) -> System:
         """The System at a point."""
-        return (
-            self.system
-            if np.array_equal(x, [one.start for one in self.parameters])
-            else made(self.system, self.parameters, x)
-        )
+        return made(self.system, self.parameters, x)
+
+
+def _known(
+    system: System, structure: WordStructure, parameters: Sequence[Tunable], x: Array
+) -> dict[str, SystemParameter]:
+    """What numbers reach where all are others: a product of which one factor is zero depends on both."""
+    moves = np.array([_room(one, value) for one, value in zip(parameters, x.tolist(), strict=True)])
+    beside = _beside(system, structure, parameters, x, moves)
+    if beside is None:
+        # numbers that make another structure by themselves stay
+        moves *= [bool(parameter(system, one.field).words.size) for one in parameters]
+        beside = _beside(system, structure, parameters, x, moves)
+    return {one.field: parameter(beside or system, one.field) for one in parameters}
+
+
+def _is_same(one: SystemParameter, other: SystemParameter) -> bool:
+    """Whether a number, which may be at a kink in one of two Systems, reaches the same words in both."""
+    return other.derivative is not None and np.array_equal(one.words, other.words)
+
+
+def _beside(
+    system: System, structure: WordStructure, parameters: Sequence[Tunable], x: Array, moves: Array
+) -> System | None:
+    """The System with other numbers; None where it has another structure."""
+    for share in PROBES:
+        with suppress(ModelError):
+            found = made(system, parameters, x + share * moves)
+            return found if structure.is_that_of(words_of(found)) else None
+    return None
+
+
+def _room(one: Tunable, value: float) -> float:
+    """By how much a number may move without another structure: a knot at 0 stays there."""
+    return min(one.scale, one.reach) * (value != 0.0) if np.isfinite(one.reach) else one.scale
