@@ -143,6 +143,19 @@ def add_quiet(parser: Any, what: str = "report") -> None:
     parser.add_argument("--quiet", action="store_true", help=f"print no {what}")
 
 
+def parts(text: str) -> list[str]:
+    """What stands between commas."""
+    return [part.strip() for part in text.split(",") if part.strip()]
+
+
+def number_or_text(text: str) -> float | str:
+    """A number, or anything else as it stands."""
+    try:
+        return float(text)
+    except ValueError:
+        return text
+
+
 def tell(text: str) -> None:
     """Print a report."""
     sys.stdout.write(text + "\n")

@@ -46,7 +46,7 @@ def export_command(asked: argparse.Namespace) -> int:
     from clutchwork.driveline.driveline import Driveline
 
     shell.writable([asked.out / "model.h"])
-    signals = None if asked.signals is None else [name.strip() for name in asked.signals.split(",")]
+    signals = None if asked.signals is None else shell.parts(asked.signals)
     with warnings.catch_warnings(record=True) as warned, words_of_files():
         warnings.simplefilter("always", ModelWarning)
         folder = export_c(Driveline.load(asked.model), asked.out, signals=signals, **given_options(asked))

@@ -89,7 +89,7 @@ def _gear(box: Gearbox, text: str | None) -> str | Sequence[str] | None:
     """A gear by its name, or closed elements with commas between them."""
     if text is None or text in box.gears or "," not in text:
         return text
-    return [part.strip() for part in text.split(",") if part.strip()]
+    return shell.parts(text)
 
 
 def _drawn(asked: argparse.Namespace) -> int:

@@ -83,9 +83,9 @@ def fit_command(asked: argparse.Namespace) -> int:
         slip=asked.slip,
         torque=asked.torque,
         time=asked.time,
-        load=_number_or_name(asked.load),
-        temperature=None if asked.temperature is None else _number_or_name(asked.temperature),
-        free=None if asked.free is None else [name.strip() for name in asked.free.split(",") if name.strip()],
+        load=shell.number_or_text(asked.load),
+        temperature=None if asked.temperature is None else shell.number_or_text(asked.temperature),
+        free=None if asked.free is None else shell.parts(asked.free),
         bounds=_bounds(asked.bounds),
         rest=asked.rest,
         confidence=asked.confidence,
@@ -166,14 +166,7 @@ def _value(text: str) -> Any:
         return rows if len(rows) > 1 else rows[0]
     if text in ("true", "false"):
         return text == "true"
-    return _number_or_name(text)
-
-
-def _number_or_name(text: str) -> float | str:
-    try:
-        return float(text)
-    except ValueError:
-        return text
+    return shell.number_or_text(text)
 
 
 def _number(option: str, text: str) -> float:

@@ -40,7 +40,9 @@ def add_command(subparsers: Any) -> None:
         codes="Exit code 1: the run stopped before the instant.",
     )
     shell.add_model(parser)
-    parser.add_argument("--at", type=_time, metavar="T", help="instant [s] up to which it runs; default: the start")
+    parser.add_argument(
+        "--at", type=shell.number_or_text, metavar="T", help="instant [s] up to which it runs; default: the start"
+    )
     parser.add_argument("--inputs", metavar="A,B", help="signals or wildcards; default: all that the model is given")
     parser.add_argument("--outputs", metavar="A,B", help="signals or wildcards; default: speeds and other states")
     parser.add_argument("--plot", type=Path, metavar="FILE", help="write a picture of the modes (png, svg or pdf)")
@@ -84,13 +86,5 @@ def _linearised(asked: argparse.Namespace) -> Linear:
     return linearise(system, at=asked.at, inputs=_names(asked.inputs), outputs=_names(asked.outputs))
 
 
-def _time(text: str) -> float | str:
-    """A number of seconds, or what has a unit."""
-    try:
-        return float(text)
-    except ValueError:
-        return text
-
-
 def _names(text: str | None) -> list[str] | None:
-    return None if text is None else [name.strip() for name in text.split(",") if name.strip()]
+    return None if text is None else shell.parts(text)

@@ -96,7 +96,7 @@ def outcomes(
     Parameters: laws, names separated by commas; settings, `name=value` each; out, folder for picture and table;
     signals, whether all signals of every run are written too. ValueError for what is unknown, with a near match.
     """
-    chosen = [law for law in laws.split(",") if law.strip()] if laws is not None else None
+    chosen = None if laws is None else shell.parts(laws)
     for experiment in _experiments(name, settings):
         fixed = name == EVERY and experiment.own_preset
         result = experiment.perform(chosen, preset=None if fixed else preset)
