@@ -138,4 +138,3 @@ class CalibrationRecord:
     def spread(self) -> tuple[float, ...]:
         """Goals that the starts reached where all limits hold, the least first."""
         return tuple(sorted(one.goal for one in self.outcomes if one.is_feasible))
-
