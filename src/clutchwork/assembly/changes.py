@@ -166,11 +166,15 @@ def ruled(owner: Component, paths: Sequence[tuple[str, ...]]) -> Component | Law
 
 
 def is_right_law(law: Law) -> bool:
-    """Whether there is no mistake in a law, and no advice about it."""
+    """Whether there is no mistake in a law whose values are within their bounds, and no advice about it."""
+    values = vars(law)
+    values[SOUND] = True
     try:
         return not any(law_problems(law, At("", ""))) and not any(law.advice())
     except ArithmeticError:
         return False
+    finally:
+        del values[SOUND]
 
 
 @cache

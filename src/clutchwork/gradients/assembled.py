@@ -45,7 +45,7 @@ class Assembled:
 
     def words(self, x: Array) -> Array | None:
         """The words for values of the numbers; None where the structure is another one there."""
-        if np.array_equal(x, self.start):
+        if (x == self.start).all():
             return self.structure.words
         quick = with_masses(self.system, self.parameters, x)
         found = words_of(self._system(x)) if quick is None else quick

@@ -59,7 +59,12 @@ class Chart:
 
     def words_in(self, name: str) -> tuple[int, int]:
         """The first word of an array of a System, and how many there are."""
-        return self.assembled.structure.layout.starts[name] // 8, self.assembled.system.arrays[name].size
+        return self._places[name]
+
+    @cached_property
+    def _places(self) -> dict[str, tuple[int, int]]:
+        starts = self.assembled.structure.layout.starts
+        return {name: (starts[name] // 8, array.size) for name, array in self.assembled.system.arrays.items()}
 
     @classmethod
     def of(cls, system: System, parameters: tuple[Tunable, ...], x: Array) -> Chart:
@@ -101,8 +106,8 @@ class Chart:
 
     def words(self, x: Array) -> Array | None:
         """The words at a point; None where the structure may be another one there, or numbers only fit together."""
-        written = [*self.scalars]
-        return self._written(x) if np.array_equal((x == 0.0)[written], self.zeros[written]) else None
+        changed = (x == 0.0) != self.zeros
+        return None if changed.any() and changed[[*self.scalars]].any() else self._written(x)
 
     def _written(self, x: Array) -> Array | None:
         try:

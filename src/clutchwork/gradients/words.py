@@ -67,7 +67,7 @@ class Words:
     def _check(self, x: Array) -> None:
         """Refuse what a driveline with these values refuses, in its words."""
         lower, upper = self._bounds
-        if np.any(x < lower) or np.any(x > upper) or not all(self._fits(x, *rule) for rule in self._rules):
+        if (x < lower).any() or (x > upper).any() or not all(self._fits(x, *rule) for rule in self._rules):
             self.assembled(x)
 
     @cached_property
