@@ -155,9 +155,10 @@ struct Tapes {
 /// A run whose tape is kept, to be followed back for as many weights as are wanted.
 class Adjoint {
  public:
-  Adjoint(const nb::bytes& system, const Words& words, const Times& times, double t_end, const Options& options,
-          std::int64_t row, bool work, std::int64_t tape_bytes)
+  Adjoint(const nb::bytes& system, const Words& words, const Times& probes, const Times& times, double t_end,
+          const Options& options, std::int64_t row, bool work, std::int64_t tape_bytes)
       : row_(row), k_(std::int64_t(times.shape(0))) {
+    if (probes.shape(0) != words.shape(0)) throw nb::value_error("one probe for each word");
     const std::int64_t bytes = std::int64_t(system.size()), size = cw_adjoint_size(system.c_str(), bytes);
     if (size < 0) throw nb::value_error("the bytes are not a system of this core");
     memory_.reset(new double[std::size_t(size / 8 + 2)]);
@@ -169,7 +170,7 @@ class Adjoint {
     for (const auto& [name, setting] : options) cw_adjoint_set_option(run_, name.c_str(), setting);
     if (!work) cw_adjoint_leave_out_work(run_);
     for (std::size_t i = 0; i < words.shape(0); ++i) {
-      seeds_.push_back(cw_adjoint_seed(run_, words.data()[i]));
+      seeds_.push_back(cw_adjoint_seed(run_, words.data()[i], probes.data()[i]));
       if (seeds_.back() < 0) throw nb::value_error("a word is not a number of the motion");
     }
     nb::gil_scoped_release release;
@@ -255,10 +256,10 @@ NB_MODULE(_derivatives, m) {
   m.attr("guards") = nb::tuple(guards);
   m.def("supported", &cw_tangents_supported, "Whether it was compiled for the processor of this machine.");
   nb::class_<Adjoint>(m, "Adjoint")
-      .def(nb::init<const nb::bytes&, const Words&, const Times&, double, const Options&, std::int64_t, bool,
-                    std::int64_t>(),
-           nb::arg("system"), nb::arg("words"), nb::arg("times"), nb::arg("t_end"), nb::arg("options"),
-           nb::arg("row_size"), nb::arg("work"), nb::arg("tape_bytes"))
+      .def(nb::init<const nb::bytes&, const Words&, const Times&, const Times&, double, const Options&, std::int64_t,
+                    bool, std::int64_t>(),
+           nb::arg("system"), nb::arg("words"), nb::arg("probes"), nb::arg("times"), nb::arg("t_end"),
+           nb::arg("options"), nb::arg("row_size"), nb::arg("work"), nb::arg("tape_bytes"))
       .def("found", &Adjoint::found)
       .def("back", &Adjoint::back, nb::arg("row_weights"), nb::arg("event_weights"))
       .def_prop_ro("size", &Adjoint::size);

@@ -72,8 +72,9 @@ cw_adjoint* cw_adjoint_load(const void* system, int64_t bytes, void* memory, int
 /* As cw_tangents_set_option. */
 int cw_adjoint_set_option(cw_adjoint* run, const char* name, double value);
 
-/* Derivatives by this word of the system are wanted; before the start. Its number on the tape, -1: it has none. */
-int64_t cw_adjoint_seed(cw_adjoint* run, int64_t word);
+/* Derivatives by this word of the system are wanted; before the start. Its number on the tape, -1: it has none. The
+   steps of the derivatives are those that one direction needs, in which the word changes by `probe`. */
+int64_t cw_adjoint_seed(cw_adjoint* run, int64_t word, double probe);
 
 /* As cw_tangents_leave_out_work. */
 int cw_adjoint_leave_out_work(cw_adjoint* run);

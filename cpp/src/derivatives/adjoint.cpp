@@ -2,7 +2,6 @@
 
 #include <clutchwork/components/taped.hpp>
 
-#include <cmath>
 #include <cstring>
 #include <new>
 // the image of a run is plain: what the core has of that is compiled here too
@@ -80,16 +79,11 @@ int cw_adjoint_set_option(cw_adjoint* run, const char* name, double value) {
 
 int cw_adjoint_leave_out_work(cw_adjoint* run) { return run == nullptr ? 0 : leave_out_work(run->ws); }
 
-std::int64_t cw_adjoint_seed(cw_adjoint* run, std::int64_t word) {
-  if (run == nullptr || run->ws.started) return -1;
+std::int64_t cw_adjoint_seed(cw_adjoint* run, std::int64_t word, double probe) {
+  if (run == nullptr || run->ws.started || !(probe - probe == 0)) return -1;
   Taped* number = number_at(run->ws, run->plain, run->system, word);
   if (number == nullptr) return -1;
-  if (number->id == 0) {
-    number->id = run->tape.note(0, 0, 0, 0);
-    // of what the number is, and never the same for two
-    const double turn = 0.6180339887498949 * double(word + 1), share = turn - std::floor(turn);
-    number->probe = (share < 0.5 ? -0.5 - share : share) * (number->v != 0 ? number->v : 1.0);
-  }
+  if (number->id == 0) number->id = run->tape.note(0, 0, 0, 0), number->probe = probe;
   return number->id;
 }
 

@@ -53,6 +53,21 @@ T* number_at(Workspace<T>& ws, const System& plain, const unsigned char* bytes, 
   return found;
 }
 
+/// The instant [s] before which a word of the bytes has no part in the run: of a later piece of a signal its start,
+/// -infinity of all others.
+inline double begin_of(const System& plain, const unsigned char* bytes, std::int64_t word) {
+  const auto at = reinterpret_cast<const double*>(bytes + 8 * word);
+  for (std::int64_t i = 0; i < plain.inputs; ++i) {
+    const std::int64_t first = plain.input_first[i], n = plain.input_count[i];
+    const double *time = plain.segment_time + first, *coef = plain.segment_coef + segment_size * first;
+    const bool is_time = at >= time && at < time + n, is_coef = at >= coef && at < coef + segment_size * n;
+    if (!is_time && !is_coef) continue;
+    const std::int64_t piece = is_time ? at - time : (at - coef) / segment_size;
+    return piece > 0 && !(plain.input_period[i] > 0) ? time[piece] : -infinity;
+  }
+  return -infinity;
+}
+
 /// Derivatives without those of angles and work; false where steps follow the work.
 template <class T>
 bool leave_out_work(Workspace<T>& ws) {

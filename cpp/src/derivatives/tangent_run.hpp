@@ -54,6 +54,8 @@ struct TangentCalls {
     run->system = static_cast<const unsigned char*>(system);
     bind(run->plain, run->system, bytes);
     lay_out(*run, at + head);
+    // until a number is seeded
+    run->ws.moved.directions = 0, run->ws.moved.begin = infinity;
     return run;
   }
 
@@ -74,6 +76,9 @@ struct TangentCalls {
     auto* number = number_at(run.ws, run.plain, run.system, word);
     if (number == nullptr || run.ws.started) return 0;
     number->slope(direction) += slope;
+    auto& moved = run.ws.moved;
+    moved.directions = larger(moved.directions, direction + 1);
+    moved.begin = smaller(moved.begin, begin_of(run.plain, run.system, word));
     return 1;
   }
 

@@ -97,7 +97,7 @@ class Doubts:
 
     def _asked_at_events(self) -> Iterator[Doubt]:
         for number, line in enumerate(self.lines):
-            if line.at is not None and np.any(self._is_at(line.at)):
+            if line.at is not None and self._is_at(line.at).any():
                 why = f"{line.name} is asked for at the instant of an event, {line.at:.9g} s, which moves"
                 yield Doubt(f"{why}; ask before or behind it", self._only(number), self._moving_events(line.at))
 

@@ -144,7 +144,7 @@ class Exact:
         values, matrix = np.array([one.value for one in known]), np.array([one.left for one in known])
         if not doubts and all(one.left is one.right for one in known) and np.all(np.isfinite(matrix)):
             return GradientValues(values, matrix, notes)
-        settling = Settling.of(self.task, x, self._sizes(x), known, doubts)
+        settling = Settling.of(self.task, x, self.runs.sizes(x), known, doubts)
         settling.settle(beside)
         matrix = settling.matrix()
         return GradientValues(values, matrix, notes, tuple(settling.problems(matrix)))
@@ -182,7 +182,7 @@ class Exact:
     def lines(self, point: RunPoint) -> tuple[Run, list[Line]]:
         """A run, and what is asked of it with derivatives as they are."""
         run, outputs = self._refined(point, len(self.task.labels)), self.task.outputs
-        return run, lines(run, outputs, self.task.labels, self._asked, self._sizes(point.x))
+        return run, lines(run, outputs, self.task.labels, self._asked, self.runs.sizes(point.x))
 
     def _refined(self, point: RunPoint, results: int) -> Run:
         """A run with rows on both sides of where signals of extremes bend."""
@@ -208,7 +208,7 @@ class Exact:
         return len(x) >= FOLLOWED_FROM + FOLLOWED_FOR_EACH * results
 
     def _doubts(self, point: RunPoint, run: Run, found: list[Line]) -> list[Doubt]:
-        return list(Doubts(self.runs, point, run, found, self._sizes(point.x)).found())
+        return list(Doubts(self.runs, point, run, found, self.runs.sizes(point.x)).found())
 
     def _beside(self, x: Array, number: int | None) -> list[Line] | None:
         """Lines of a run beside the point, by one number alone where it is given; None where there is no run."""
@@ -237,19 +237,9 @@ class Exact:
 
         Parameters: reach, how far they may be moved to find derivatives of words, of their size.
         """
-        sizes, chosen = self._sizes(x), [(number, self.task.parameters[number]) for number in numbers]
+        sizes, chosen = self.runs.sizes(x), [(number, self.task.parameters[number]) for number in numbers]
         parameters = tuple(
             replace(one, start=float(x[number]), reach=min(one.reach, reach * float(sizes[number])))
             for number, one in chosen
         )
         return Exact(replace(self.task, system=self.runs.words.assembled(x), parameters=parameters))
-
-    def _sizes(self, x: Array) -> Array:
-        scales, are_entries = self._scales
-        return np.maximum(np.abs(x), np.where(are_entries | (x == 0.0), scales, 0.0))
-
-    @cached_property
-    def _scales(self) -> tuple[Array, NDArray[np.bool_]]:
-        """Of each number its scale, and whether it is an entry of a table."""
-        own = self.task.parameters
-        return np.array([one.scale for one in own]), np.array([bool(one.places) for one in own])

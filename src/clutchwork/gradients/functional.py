@@ -29,8 +29,9 @@ class Functional:
 
     def add(self, rows: Places, columns: Places, weights: Array) -> None:
         """Weights of a matrix of numbers: a line for each row, a column for each place in it."""
-        self.rows.append(np.repeat(rows, len(columns)))
-        self.columns.append(np.tile(columns, len(rows)))
+        alone = len(rows) == 1
+        self.rows.append(rows.repeat(len(columns)))
+        self.columns.append(columns if alone else np.tile(columns, len(rows)))
         self.weights.append(np.ascontiguousarray(weights, dtype=float).ravel())
 
     def add_event(self, number: int, weight: float) -> None:

@@ -7,6 +7,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from functools import cache
+from itertools import pairwise
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -49,8 +50,8 @@ def guards(effect: str) -> tuple[int, ...]:
 
 def together(grazes: Array) -> bool:
     """Whether two guards that decide about contacts are hit at one instant."""
-    times = np.sort(grazes[np.isin(grazes[:, KIND], guards("decides")), TIME])
-    return bool(np.any(np.diff(times) <= ONE_INSTANT * (1.0 + np.abs(times[1:]))))
+    times = sorted(time for time, kind in grazes[:, : KIND + 1].tolist() if kind in guards("decides"))
+    return any(later - time <= ONE_INSTANT * (1.0 + abs(later)) for time, later in pairwise(times))
 
 
 def decided(grazes: Array, events: Array) -> Array:
@@ -59,10 +60,12 @@ def decided(grazes: Array, events: Array) -> Array:
     What passes from one piece of a law or a table to the next, and what bounces, may do so slowly: the motion goes on
     as it was, or jumps by less the slower it is.
     """
-    changed = events[events[:, AT["from"]] != events[:, AT["to"]], AT["time"]]
-    known = grazes[np.isin(grazes[:, KIND], guards("decides"))]
-    there = np.abs(known[:, TIME, None] - changed) <= SAME * (1.0 + np.abs(changed))
-    found: Array = known[there.any(axis=1)]
+    known = [number for number, kind in enumerate(grazes[:, KIND].tolist()) if kind in guards("decides")]
+    if not known:
+        return grazes[:0]
+    changed, deciding = events[:, AT["time"]][events[:, AT["from"]] != events[:, AT["to"]]], grazes.take(known, axis=0)
+    there = np.abs(deciding[:, TIME, None] - changed) <= SAME * (1.0 + np.abs(changed))
+    found: Array = deciding[there.any(axis=1)]
     return found
 
 
@@ -89,13 +92,17 @@ def jumping_together(system: System, grazes: Array, sizes: float) -> Iterator[tu
 
     Parameters: sizes, the largest size of a number.
     """
-    for graze in grazes[(grazes[:, KIND] < 0) & (grazes[:, DIFFERENCE] * sizes > APART)]:
+    for graze in grazes.tolist():
+        if graze[KIND] >= 0 or graze[DIFFERENCE] * sizes <= APART:
+            continue
         time, name = float(graze[TIME]), component(system, int(graze[COMPONENT]), int(graze[KIND]))
         yield time, f"{name} jumps at {time:.9g} s together with another signal, whose knot moves otherwise; move one"
 
 
 def crowded(events: Array, contacts: Sequence[str]) -> Iterator[tuple[float, str]]:
     """Contacts that lock and let go again and again within an instant, which no derivative survives."""
+    if len(events) < CROWD:
+        return
     changed = _locking(events)
     for number, name in enumerate(contacts) if len(changed) >= CROWD else ():
         times = np.sort(changed[changed[:, AT["contact"]] == number, AT["time"]])
@@ -111,9 +118,9 @@ def struck_together(system: System, events: Array, contacts: Sequence[str]) -> I
 
     Those on shafts that share no motion do not feel each other.
     """
-    hit = events[events[:, AT["cause"]] == IMPACT]
-    if len(hit) < 2:
+    if events[:, AT["cause"]].tolist().count(IMPACT) < 2:
         return
+    hit = events[events[:, AT["cause"]] == IMPACT]
     parts = moving_together(system)[hit[:, AT["contact"]].astype(int)]
     for part in np.unique(parts):
         yield from _struck(hit[parts == part], contacts)
@@ -136,8 +143,10 @@ def decided_at_knots(
 
     Parameters: knots, instants of all [s]. Where a signal jumps the knot is what makes them do so.
     """
-    changed, jumps = _locking(events), grazes[grazes[:, KIND] < 0, TIME]
-    for event in changed[_near(changed[:, AT["time"]], knots)]:
+    changed = _locking(events)
+    close = changed[_near(changed[:, AT["time"]], knots)]
+    jumps = grazes[grazes[:, KIND] < 0, TIME] if len(close) else knots
+    for event in close:
         time = float(event[AT["time"]])
         if event[AT["cause"]] in DRIVEN and _near(event[[AT["time"]]], jumps)[0]:
             continue

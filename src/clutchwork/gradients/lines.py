@@ -102,9 +102,14 @@ def _unknown(run: Run, one: Measure, sizes: Array) -> NDArray[np.bool_]:
 
 def _size(primal: Primal, columns: Places, time: float) -> float:
     """The largest of all numbers of a row that are of the kind of some."""
-    row, parts, own = primal.rows[primal.row(time)], primal.columns.values(), columns.tolist()
-    used = (row[part] for part in parts if any(part.start <= column < part.stop for column in own))
-    return max((float(np.abs(part).max()) for part in used), default=0.0)
+    row, own = primal.rows[primal.row(time)], columns.tolist()
+    used = {
+        (part.start, part.stop)
+        for part in primal.columns.values()
+        for column in own
+        if part.start <= column < part.stop
+    }
+    return max((abs(number) for first, end in used for number in row[first:end].tolist()), default=0.0)
 
 
 def _apart(found: Array, sizes: Array) -> Places:

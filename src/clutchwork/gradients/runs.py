@@ -33,6 +33,8 @@ Array = NDArray[np.float64]
 TAPES = (1 << 28, 1 << 31)
 # parts of a row that are integrals over time
 INTEGRALS = ("angle", "element_work", "contact_work", "prescribed_work", "supply_energy", "meter_energy")
+# multiples of it never come again, and spread evenly
+TURN = 0.6180339887498949
 NO_TANGENTS = np.zeros((0, 0, 0))
 
 
@@ -97,6 +99,17 @@ class Runs:
         """Runs without derivatives."""
         return PlainRuns(self.wanted, self._options, self.task.threads, Sharing.of(self.task.system))
 
+    def sizes(self, x: Array) -> Array:
+        """Sizes of the numbers at a point."""
+        scales, are_entries = self._scales
+        return np.maximum(np.abs(x), np.where(are_entries | (x == 0.0), scales, 0.0))
+
+    @cached_property
+    def _scales(self) -> tuple[Array, NDArray[np.bool_]]:
+        """Of each number its scale, and whether it is an entry of a table."""
+        own = self.task.parameters
+        return np.array([one.scale for one in own]), np.array([bool(one.places) for one in own])
+
     # ------------------------------------------------------------------------------------------------- with derivatives
 
     def point(self, x: Array) -> RunPoint:
@@ -128,8 +141,9 @@ class Runs:
     def taped(self, point: RunPoint) -> Run:
         """A run that is followed back from each result; forward where there is no memory for it."""
         places = point.slopes.places.astype(np.int64)
+        probes = point.slopes.matrix @ (self.sizes(point.x) * self._shares)
         for size in TAPES:
-            tape = derivatives().Adjoint(point.system, places, *self._how(point), size)
+            tape = derivatives().Adjoint(point.system, places, probes, *self._how(point), size)
             status, _, rows, events, grazes, fault = tape.found()
             if status != INTERRUPTED:
                 break
@@ -142,6 +156,18 @@ class Runs:
         primal = self._primal(point, rows, events, grazes)
         slope = partial(_back, tape, point.slopes, primal.rows.shape, len(events))
         return Run(primal, slope, is_forward=False, notes=point.notes)
+
+    @cached_property
+    def _shares(self) -> Array:
+        """Shares of the numbers in one direction of all, never the same for two, by which derivatives take their steps.
+
+        Entries of a table go the same way: a table that is moved up and down excites what none of them does.
+        """
+        fields = [one.field for one in self.task.parameters]
+        order = {field: number for number, field in enumerate(dict.fromkeys(fields), 1)}
+        ways = np.array([order[field] * TURN % 1.0 < 0.5 for field in fields], dtype=bool)
+        amounts = 0.8 + 0.2 * (TURN * np.arange(1, len(fields) + 1) % 1.0)
+        return np.where(ways, -amounts, amounts)
 
     def _how(self, point: RunPoint) -> tuple[Any, ...]:
         """Instants, options and sizes of both kinds of runs with derivatives."""
@@ -175,7 +201,7 @@ class Runs:
             events=events,
             grazes=grazes,
             knots=point.knots,
-            steps=point.steps.on(point.grid),
+            steps=point.steps.on(point.grid) if len(point.steps) else point.steps,
             jerks=point.jerks,
             forms=self.signals.at(point.x),
             bent=self.signals.bent(point.x, rows),

@@ -325,5 +325,4 @@ def is_of_structure(signal: str, form: Form) -> bool:
 
 def _constant(columns: Any, factors: Any, rows: Rows) -> Weights:
     """The same derivatives in all rows."""
-    line = np.asarray(factors, dtype=float)
-    return Weights(np.asarray(columns, dtype=np.intp), np.broadcast_to(line, (len(rows), len(line))))
+    return Weights(np.array(columns, dtype=np.intp), np.ones((len(rows), 1)) * np.array(factors, dtype=float))

@@ -1,5 +1,6 @@
 #pragma once
 #include <clutchwork/components/dual.hpp>
+#include <clutchwork/components/slopes.hpp>
 
 /// A number with derivatives of the whole run by some numbers of its model. docs/theory/gradients.md
 namespace clutchwork {
@@ -9,6 +10,7 @@ template <int N, int R = 2>
 struct Tangent {
   typedef double Part __attribute__((vector_size(8 * R)));
   static constexpr int kept = N, seen = N, parts = N / R;
+  using Widest = Slopes<N, R>;  ///< its derivatives alone
   alignas(8 * R) Part part[parts]{};
   double v = 0;
 
@@ -76,6 +78,12 @@ struct Tangent {
   double& slope(int i) { return reinterpret_cast<double*>(part)[i]; }
   double slope(int i) const { return reinterpret_cast<const double*>(part)[i]; }
   double seen_slope(int i) const { return slope(i); }
+  /// f(std::type_identity<X>{}) with an X for the derivatives alone: in one direction, or in all.
+  template <class F>
+  static auto over(int directions, F&& f) {
+    if (directions <= 1) return f(std::type_identity<double>{});
+    return f(std::type_identity<Widest>{});
+  }
   /// What a row keeps of the derivatives.
   friend CLUTCHWORK_HOT void keep(const Tangent& x, double* to) {
     for (int i = 0; i < N; ++i) to[i] = x.slope(i);
@@ -100,6 +108,41 @@ struct NumberOf<Tangent<N, R>> : NumberOf<double> {
   static constexpr bool tangents = true;
   using Given = Tangent<N, R>;
   using Point = Tangent<N, R>;
+};
+
+template <int N, int R>
+struct SlopesAs<Tangent<N, R>, Slopes<N, R>> {
+  using T = Tangent<N, R>;
+  using X = Slopes<N, R>;
+  using Seen = X;
+  static constexpr int count = N;
+  static CLUTCHWORK_HOT X of(const T& x) {
+    X slopes;
+    for (int i = 0; i < X::parts; ++i) slopes.part[i] = x.part[i];
+    return slopes;
+  }
+  static CLUTCHWORK_HOT T number(double v, const X& slopes) {
+    T x(v);
+    for (int i = 0; i < X::parts; ++i) x.part[i] = slopes.part[i];
+    return x;
+  }
+  static CLUTCHWORK_HOT const Seen& seen(const X& slopes) { return slopes; }
+  static CLUTCHWORK_HOT double at(const Seen& slopes, int j) { return slopes.part[j / R][j % R]; }
+};
+template <int N, int R>
+struct SlopesAs<Tangent<N, R>, double> {
+  using T = Tangent<N, R>;
+  using Seen = double;
+  static constexpr int count = 1;
+  static CLUTCHWORK_HOT double of(const T& x) { return x.part[0][0]; }
+  static CLUTCHWORK_HOT T number(double v, double slope) {
+    T x(v);
+    // as a whole register: one that is written in pieces has to wait where it is read
+    x.part[0] = typename T::Part{slope};
+    return x;
+  }
+  static CLUTCHWORK_HOT double seen(double slope) { return slope; }
+  static CLUTCHWORK_HOT double at(double slope, int) { return slope; }
 };
 
 #define CLUTCHWORK_CHAIN(NAME, F, SLOPE)                      \

@@ -1,5 +1,6 @@
 #pragma once
 #include <clutchwork/components/dual.hpp>
+#include <clutchwork/components/slopes.hpp>
 
 #include <cstdint>
 
@@ -33,6 +34,15 @@ class Tape {
     node_[n_] = {a, b, by_a, by_b};
     return n_++;
   }
+  /// The number of a weighted sum of n numbers: nodes one behind the other, each but the first with that before it.
+  [[gnu::noinline]] std::int32_t sum(int n, const std::int32_t* id, const double* by) {
+    if (n_ + n / 2 >= room_) return full_ = true, 0;
+    for (int j = 0; j < n; j += 2) {
+      const bool two = j + 1 < n;
+      node_[n_++] = {j > 0 ? ~id[j] : id[j], two ? id[j + 1] : 0, by[j], two ? by[j + 1] : 0};
+    }
+    return n_ - 1;
+  }
   bool is_full() const { return full_; }
   std::int32_t size() const { return n_; }
 
@@ -42,8 +52,10 @@ class Tape {
       const double x = adjoint[i];
       if (x == 0) continue;
       const Node& node = node_[i];
+      std::int32_t first = node.first;
+      if (first < 0) first = ~first, adjoint[i - 1] += x;
       // what a constant gets is not looked at
-      adjoint[node.first] += x * node.by_first;
+      adjoint[first] += x * node.by_first;
       adjoint[node.second] += x * node.by_second;
     }
   }
@@ -59,11 +71,14 @@ class Tape {
   bool full_ = false;
 };
 
+struct TapedSum;
+
 /// A value and its number on the tape, 0: a constant; and its derivative in one direction, by which steps are chosen.
 struct Taped {
   double v = 0, probe = 0;
   std::int32_t id = 0;
   static constexpr int kept = 1, seen = 1;
+  using Widest = TapedSum;  ///< its derivatives alone
 
   Taped() = default;
   CLUTCHWORK_HOT Taped(double x) : v(x) {}
@@ -118,6 +133,11 @@ struct Taped {
   friend CLUTCHWORK_HOT bool operator!=(const Taped& a, const Taped& b) { return a.v != b.v; }
 
   double seen_slope(int) const { return probe; }
+  /// As of numbers that carry their derivatives.
+  template <class F>
+  static auto over(int, F&& f) {
+    return f(std::type_identity<TapedSum>{});
+  }
   friend CLUTCHWORK_HOT double value(const Taped& x) { return x.v; }
   friend CLUTCHWORK_HOT Taped without_value(const Taped& x) { return chain(x, 0, 1); }
   friend CLUTCHWORK_HOT bool is_constant(const Taped& x) { return x.id == 0; }
@@ -128,6 +148,80 @@ struct Taped {
   friend CLUTCHWORK_HOT void keep(const Taped& x, double* to) { to[0] = x.id; }
   /// Not known before the tape is followed back.
   friend double largest_difference(const Taped&, const Taped&) { return 0; }
+};
+
+/// Derivatives that are a weighted sum of numbers on the tape, noted as one where they are used.
+struct TapedSum {
+  static constexpr int room = 8;
+  double probe = 0;
+  mutable int n = 0;
+  mutable std::int32_t id[room];
+  mutable double by[room];
+
+  TapedSum() = default;
+  explicit TapedSum(double) {}
+  explicit TapedSum(const Taped& x) : probe(x.probe), n(x.id != 0) { id[0] = x.id, by[0] = 1; }
+  TapedSum(const TapedSum& b) { *this = b; }
+  TapedSum& operator=(const TapedSum& b) {
+    b.settle();
+    probe = b.probe, n = b.n;
+    if (n > 0) id[0] = b.id[0], by[0] = b.by[0];
+    return *this;
+  }
+
+  /// One number is left, or none.
+  void settle() const {
+    if (n > 1) set_number(Tape::current()->sum(n, id, by));
+  }
+  /// Its number, 0: a constant.
+  std::int32_t number() const {
+    settle();
+    if (n > 0 && by[0] != 1) set_number(Tape::current()->note(id[0], by[0], 0, 0));
+    return n > 0 ? id[0] : 0;
+  }
+
+  TapedSum& operator+=(const TapedSum& b) {
+    add_times(1, b, *this);
+    return *this;
+  }
+  friend TapedSum operator+(const TapedSum& a, const TapedSum& b) {
+    TapedSum r = a;
+    r += b;
+    return r;
+  }
+  friend TapedSum operator*(const TapedSum& a, double b) {
+    TapedSum r;
+    add_times(b, a, r);
+    return r;
+  }
+  friend TapedSum operator*(double a, const TapedSum& b) { return b * a; }
+  friend CLUTCHWORK_HOT void add_times(double a, const TapedSum& x, TapedSum& y) {
+    if (x.n != 1 || y.n == room) make_room(x, y);
+    if (x.n == 0) return;
+    y.probe += a * x.probe;
+    y.id[y.n] = x.id[0], y.by[y.n++] = a * x.by[0];
+  }
+
+ private:
+  [[gnu::noinline]] static void make_room(const TapedSum& x, TapedSum& y) {
+    x.settle();
+    if (y.n == room) y.settle();
+  }
+  void set_number(std::int32_t found) const { n = found != 0, id[0] = found, by[0] = 1; }
+};
+
+template <>
+struct SlopesAs<Taped, TapedSum> {
+  using Seen = double;
+  static constexpr int count = 1;
+  static TapedSum of(const Taped& x) { return TapedSum(x); }
+  static Taped number(double v, const TapedSum& slopes) {
+    Taped x(v);
+    x.id = slopes.number(), x.probe = slopes.probe;
+    return x;
+  }
+  static double seen(const TapedSum& slopes) { return slopes.probe; }
+  static double at(double seen, int) { return seen; }
 };
 
 template <>

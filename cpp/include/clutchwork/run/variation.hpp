@@ -1,4 +1,5 @@
 #pragma once
+#include <clutchwork/components/slopes.hpp>
 #include <clutchwork/motion/dynamics.hpp>
 #include <clutchwork/run/integrator/memory.hpp>
 #include <clutchwork/run/integrator/rodas5p.hpp>
@@ -29,6 +30,8 @@ template <class Form>
 class Variation {
   using T = typename Form::Scalar;
   using Plain = typename PlainForm<Form>::type;
+  template <class X>
+  using As = SlopesAs<T, X>;
   // of a step: how far ahead the change of the slopes with time is looked at
   static constexpr double ahead = 1e-3;
   // a direction may miss so much of itself in a part, of rtol: the error of the motion moves derivatives by more
@@ -95,33 +98,15 @@ class Variation {
   /// `end`, to `until` or less far; how far it got, -1: its length has become too short.
   double follow(double from, double until, double end) {
     fit(form, step);
-    for (;;) {
-      const double left = (until - from) * step.h, pace = ws_.moved.pace;
-      const bool last = left <= 1.001 * pace;
-      // the rest in equal parts
-      const double h = last ? left : left / double(std::int64_t(left / pace) + 1);
-      const double to = last ? until : from + h / step.h;
-      if (!(h > 1e-14 * larger(1e-2, abs(step.t)))) return last ? leap(from, until) : -1;
-      if (!prepare(from, h)) return -1;
-      linearize_at(to, end);
-      from_ = from, to_ = to, share_ = h / step.h;
-      const double error = vary(h);
-      const double growth = 0.9 * pow(larger(error, 1e-10), -0.2);
-      if (error <= 1) {
-        // one that was cut says nothing of longer ones
-        ws_.moved.pace = last ? larger(pace, h * smaller(6.0, growth)) : h * smaller(6.0, growth);
-        for (int i = 0; i < form.n(); ++i) step_.f1()[i] = step_.dt1()[i];
-        known_ = !has_ties();
-        set_values();
-        return to;
-      }
-      ws_.moved.pace = h * (error < 1e300 ? larger(0.2, smaller(0.9, growth)) : 0.1);
-    }
+    if (step.t + until * step.h <= ws_.moved.begin) return leap(from, until);
+    auto as = [&](auto tag) { return follow_as<typename decltype(tag)::type>(from, until, end); };
+    return T::over(ws_.moved.directions, as);
   }
   /// The interpolant of the present part.
   void fit_part() {
     if (step_.dense) return;
-    fit(form_, step_);
+    T::over(ws_.moved.directions, [&](auto tag) { fit_slopes<typename decltype(tag)::type>(); });
+    step_.dense = true;
     fit_values();
   }
   /// Where no time passes.
@@ -158,7 +143,7 @@ class Variation {
   /// Speeds are brought back onto ties after a part.
   bool has_ties() const { return Form::full && ws_.ratios.n > 0; }
 
-  /// Too short for a step: the derivatives stay.
+  /// The derivatives stay: it is too short for a step, or none has begun.
   double leap(double from, double until) {
     for (int i = 0; i < form.n(); ++i) step_.y1()[i] = step_.y0()[i];
     for (int q = 0; q < 3; ++q) {
@@ -168,6 +153,39 @@ class Variation {
     from_ = from, to_ = until, known_ = false;
     set_values(), fit_values();
     return until;
+  }
+
+  /// As follow, with the derivatives as an X.
+  template <class X>
+  double follow_as(double from, double until, double end) {
+    for (;;) {
+      const double left = (until - from) * step.h, pace = ws_.moved.pace;
+      const bool last = left <= 1.001 * pace;
+      // the rest in equal parts
+      const double h = last ? left : left / double(std::int64_t(left / pace) + 1);
+      const double to = last ? until : from + h / step.h;
+      if (!(h > 1e-14 * larger(1e-2, abs(step.t)))) return last ? leap(from, until) : -1;
+      if (!prepare(from, h)) return -1;
+      linearize_at(to, end);
+      from_ = from, to_ = to, share_ = h / step.h;
+      const double error = vary<X>(h);
+      const double growth = 0.9 * pow(larger(error, 1e-10), -0.2);
+      if (error <= 1) {
+        // one that was cut says nothing of longer ones
+        ws_.moved.pace = last ? larger(pace, h * smaller(6.0, growth)) : h * smaller(6.0, growth);
+        for (int i = 0; i < form.n(); ++i) row<X>(SlopeRow::first)[i] = row<X>(SlopeRow::last)[i];
+        known_ = !has_ties();
+        set_values();
+        return to;
+      }
+      ws_.moved.pace = h * (error < 1e300 ? larger(0.2, smaller(0.9, growth)) : 0.1);
+    }
+  }
+
+  /// A row of derivatives alone.
+  template <class X>
+  X* row(int i) {
+    return reinterpret_cast<X*>(ws_.moved.slopes + i * form.n());
   }
 
   void swap_jacobians() {
@@ -207,7 +225,18 @@ class Variation {
     if (to_ < 1) interpolate(form, step, to_, end);
     for (int i = 0; i < form.n(); ++i) step_.y1()[i].v = to_ < 1 ? end[i] : step.y1()[i];
   }
-  /// Those of its interpolant: the same quartic over the part.
+  /// The derivatives of its interpolant.
+  template <class X>
+  void fit_slopes() {
+    for (int q = 0; q < 3; ++q) {
+      for (int i = 0; i < form.n(); ++i) {
+        X x = X(0);
+        for (int s = 0; s < 8; ++s) add_times(Rodas5P::dense[q][s], row<X>(s)[i], x);
+        step_.p(q)[i] = As<X>::number(0, x);
+      }
+    }
+  }
+  /// Its values: the same quartic over the part.
   void fit_values() {
     const double from = from_, d = to_ - from;
     for (int i = 0; i < form.n(); ++i) {
@@ -225,46 +254,56 @@ class Variation {
     for (int a = 0; a < ws_.held.n; ++a) to.multiplier[a] = T(from.multiplier[a]);
   }
 
-  /// Derivatives of the slopes at the share s of the present part of the step, whose state has the derivatives of `y`,
-  /// into `d`.
-  void slopes_at(double s, const T* y, T* d) {
+  /// Derivatives of the slopes at the share s of the present part of the step, where those of the state are `y`, into
+  /// `d`.
+  template <class X>
+  [[gnu::noinline]] void slopes_at(double s, const X* y, X* d) {
     const double at = from_ + s * share_, t = step.t + at * step.h;
-    T* whole = step_.point();
+    T *whole = step_.point(), *made = step_.p(2);
     interpolate(form, step, at, step.point());
-    for (int i = 0; i < form.n(); ++i) whole[i] = y[i], whole[i].v = step.point()[i];
+    for (int i = 0; i < form.n(); ++i) whole[i] = As<X>::number(step.point()[i], y[i]);
     if (Form::full || rows_move_ || ws_.sys.shared > 0) {
-      evaluate(form_, t, whole, d);
+      evaluate(form_, t, whole, made);
+      for (int i = 0; i < form.n(); ++i) d[i] = As<X>::of(made[i]), step.slope()[i] = value(made[i]);
     } else {
-      evaluate_over_plain_rows(t, whole, d);
+      evaluate_over_plain_rows(t, whole, y, d);
     }
     if (mass_moves_) take_from_mass(d);
-    for (int i = 0; i < form.n(); ++i) d[i].v = 0;
   }
-  /// As evaluate, where the rows of the branches have no derivatives.
-  void evaluate_over_plain_rows(double t, const T* y, T* d) {
+  /// As evaluate, where the rows of the branches have no derivatives. The slopes themselves go to step.slope().
+  template <class X>
+  void evaluate_over_plain_rows(double t, const T* whole, const X* y, X* d) {
     const int nz = form.nz();
-    inputs_with(ws_, t, y + nz);
-    for (int i = 0; i < form.n(); ++i) d[i] = T(0);
+    T* own = step_.p(2);
+    double* plain = step.slope();
+    inputs_with(ws_, t, whole + nz);
+    for (int i = 0; i < form.n(); ++i) d[i] = X(0), own[i] = T(0), plain[i] = 0;
     for (int k = 0; k < ws_.n_branches; ++k) {
-      const T rate = form.rate(k, y) + offset_rate(ws_, k);
-      form.push(k, branch_torque(ws_, ws_.branch[k], rate, y + nz, d + nz), d);
+      T rate = As<X>::number(form.rate(k, step.point()), form.rate(k, y));
+      if (ws_.sys.prescribed > 0) rate += offset_rate(ws_, k);
+      const T torque = branch_torque(ws_, ws_.branch[k], rate, whole + nz, own + nz);
+      form.push(k, As<X>::of(torque), d);
+      if (mass_moves_) form.push(k, value(torque), plain);
     }
+    for (int i = nz; i < form.n(); ++i) d[i] = As<X>::of(own[i]);
   }
   /// What a mass that changes takes of the slopes.
-  void take_from_mass(T* d) {
+  template <class X>
+  void take_from_mass(X* d) {
     double* velocity = step.slope();
-    for (int i = 0; i < form.nz(); ++i) velocity[i] = value(d[i]);
     form.solve_mass(velocity);
-    T* moved = step_.slope();
+    T *moved = step_.slope(), *taken = step_.p(2);
     for (int i = 0; i < form.nz(); ++i) {
       const bool massless = ws_.rows.mass.first[i] == ws_.rows.mass.first[i + 1];
-      moved[i] = T(massless ? 0.0 : velocity[i]);
+      moved[i] = T(massless ? 0.0 : velocity[i]), taken[i] = T(0);
     }
-    form_.add_mass_times(T(-1), moved, d);
+    form_.add_mass_times(T(-1), moved, taken);
+    for (int i = 0; i < form.nz(); ++i) d[i] += As<X>::of(taken[i]);
   }
 
   /// d := d + J x, with J where the image has been linearized last.
-  void add_linear(const T* x, T* d) {
+  template <class X>
+  [[gnu::noinline]] void add_linear(const X* x, X* d) {
     const Workspace<double>& ws = form.ws;
     const Jacobian<double>& j = ws.jacobian;
     const int n = form.n(), nz = form.nz(), nx = int(ws.sys.shared);
@@ -272,16 +311,16 @@ class Variation {
       for (int i = 0; i < n; ++i) add_row(n, ws.full.jacobian + i * n, x, d[i]);
       return;
     }
-    const T *own = x + nz, *shared = x + n - nx;
+    const X *own = x + nz, *shared = x + n - nx;
     for (int k = 0; k < ws.n_branches; ++k) {
       const Branch<double>& b = ws.branch[k];
-      const T rate = form.rate(k, x);
-      T torque = rate * j.partial[k].by_rate;
+      const X rate = form.rate(k, x);
+      X torque = rate * j.partial[k].by_rate;
       add_row(b.states, j.f_state + b.state, own + b.state, torque);
       add_row(nx, j.torque_by + k * nx, shared, torque);
       form.push(k, torque, d);
       for (int s = 0; s < b.states; ++s) {
-        T& to = d[nz + b.state + s];
+        X& to = d[nz + b.state + s];
         add_times(j.g_rate[b.state + s], rate, to);
         add_row(b.states, j.g_state + j.block[k] + s * b.states, own + b.state, to);
       }
@@ -291,19 +330,22 @@ class Variation {
       add_row(nx, j.by_shared + i * nx, shared, d[n - nx + i]);
     }
   }
-  static void add_row(int n, const double* row, const T* x, T& to) {
+  template <class X>
+  static void add_row(int n, const double* row, const X* x, X& to) {
     for (int i = 0; i < n; ++i) {
       if (row[i] != 0) add_times(row[i], x[i], to);
     }
   }
 
   /// Change of the slopes with time along the motion at the start of a part of length h, to second order.
-  void drift_at_start(double h, const T* start, T* drift) {
-    T *first = step_.f1(), *near = step_.k(1), *far = step_.k(2);
+  template <class X>
+  void drift_at_start(double h, const X* start, X* drift) {
+    const X* first = row<X>(SlopeRow::first);
+    X *near = row<X>(1), *far = row<X>(2);
     slopes_at(ahead, start, near), slopes_at(2 * ahead, start, far);
     const double per = 1 / (2 * ahead * h);
     for (int i = 0; i < form.n(); ++i) {
-      T x = near[i] * (4 * per);
+      X x = near[i] * (4 * per);
       add_times(-3 * per, first[i], x), add_times(-per, far[i], x);
       drift[i] = x;
     }
@@ -311,51 +353,76 @@ class Variation {
 
   /// The derivatives at the end of a part of the step of length h; their error in units of the tolerance.
   /// docs/theory/gradients.md (20)
+  template <class X>
   double vary(double h) {
     const int n = form.n();
     step_.t = step.t + from_ * step.h, step_.h = h, step_.dense = false;
-    T *start = step_.y1(), *u = step_.u(), *drift = step_.dt0(), *first = step_.f1(), *last = step_.dt1();
-    for (int i = 0; i < n; ++i) start[i] = u[i] = step_.y0()[i], start[i].v = u[i].v = 0;
+    X *start = row<X>(SlopeRow::start), *u = row<X>(SlopeRow::u), *drift = row<X>(SlopeRow::drift);
+    X *first = row<X>(SlopeRow::first), *last = row<X>(SlopeRow::last);
+    for (int i = 0; i < n; ++i) start[i] = u[i] = As<X>::of(step_.y0()[i]);
     if (!known_) slopes_at(0, start, first);
     known_ = true;
     drift_at_start(h, start, drift);
-    for (int s = 0; s < 8; ++s) {
-      T* k = step_.k(s);
-      if (s > 0) stage_from(s, start, u);
+    // the factor is that of the Jacobian at the start
+    swap_jacobians();
+    each_stage([&](auto stage) {
+      constexpr int s = stage.value;
+      X* k = row<X>(s);
+      if (s > 0) stage_from<s>(start, u);
+      if (s > 0 && s < 6) slopes_at(Rodas5P::node[s], u, s < 5 ? k : last);
       // the last three stages are at one instant, where the slopes are linear in the derivatives
-      if (s > 5) add_linear(step_.k(s - 1), last);
-      if (s == 5) slopes_at(1, u, last);
-      if (s > 0 && s < 5) slopes_at(Rodas5P::node[s], u, k);
+      if (s > 5) add_linear_at_end(row<X>(s - 1), last);
       for (int i = 0; i < n && (s == 0 || s >= 5); ++i) k[i] = s == 0 ? first[i] : last[i];
-      if (s > 0) add_stages(s, h, k);
+      if (s > 0) add_stages<s>(h, k);
       for (int i = 0; i < n && s < 5; ++i) add_times(h * Rodas5P::d[s], drift[i], k[i]);
-      swap_jacobians();
-      Rodas5P::solve(form, k, ws_.shared.rhs);
-      swap_jacobians();
-    }
-    add_linear(step_.k(7), last);
-    for (int i = 0; i < n; ++i) start[i] = u[i] + step_.k(7)[i];
-    return error_of(step_.k(7), start);
+      solve(k);
+    });
+    const X* missed = row<X>(7);
+    add_linear_at_end(missed, last);
+    swap_jacobians();
+    for (int i = 0; i < n; ++i) u[i] += missed[i], step_.y1()[i] = As<X>::number(0, u[i]);
+    return error_of(missed, u);
+  }
+  template <class F, int... s>
+  static void each_stage(F&& f, std::integer_sequence<int, s...>) {
+    (f(std::integral_constant<int, s>{}), ...);
+  }
+  template <class F>
+  static void each_stage(F&& f) {
+    each_stage(f, std::make_integer_sequence<int, 8>{});
+  }
+  template <class X>
+  [[gnu::noinline]] void solve(X* k) {
+    Rodas5P::solve(form, k, row<X>(SlopeRow::rhs));
+  }
+  /// With the other Jacobian, that of the end.
+  template <class X>
+  void add_linear_at_end(const X* x, X* d) {
+    swap_jacobians();
+    add_linear(x, d);
+    swap_jacobians();
   }
   /// The derivatives at stage s.
-  void stage_from(int s, const T* start, T* u) {
+  template <int s, class X>
+  void stage_from(const X* start, X* u) {
     for (int i = 0; i < form.n(); ++i) {
-      if (s >= 6) {
-        u[i] += step_.k(s - 1)[i];
-        continue;
+      if constexpr (s >= 6) {
+        u[i] += row<X>(s - 1)[i];
+      } else {
+        X x = start[i];
+        for (int j = 0; j < s; ++j) add_times(Rodas5P::a[s][j], row<X>(j)[i], x);
+        u[i] = x;
       }
-      T x = start[i];
-      for (int j = 0; j < s; ++j) add_times(Rodas5P::a[s][j], step_.k(j)[i], x);
-      u[i] = x;
     }
   }
   /// k := k + M / h times the stages before.
-  void add_stages(int s, double h, T* k) {
+  template <int s, class X>
+  void add_stages(double h, X* k) {
     const int nz = form.nz();
-    T* mix = step_.p(0);
+    X* mix = row<X>(SlopeRow::mix);
     for (int i = 0; i < form.n(); ++i) {
-      T x = T(0);
-      for (int j = 0; j < s; ++j) add_times(Rodas5P::c[s][j], step_.k(j)[i], x);
+      X x = X(0);
+      for (int j = 0; j < s; ++j) add_times(Rodas5P::c[s][j], row<X>(j)[i], x);
       mix[i] = x;
     }
     form.add_mass_times(1 / h, mix, k);
@@ -363,21 +430,21 @@ class Variation {
   }
 
   /// Sizes of the components of each direction over those of the motion, to f(component, size of the motion).
-  template <class F>
-  void each_component(const T* x, F&& f) const {
+  template <class X, class F>
+  void each_component(const X* x, F&& f) const {
     const Workspace<double>& plain = form.ws;
     const int nv = int(plain.sys.speeds), nz = form.nz();
     const double least = plain.options.atol / plain.options.rtol;
     double fastest = 0;
     for (int i = 0; i < nv; ++i) fastest = larger(fastest, plain.reduced.size[i]);
     for (int i = 0; i < nv; ++i) {
-      T moved = T(0);
-      each_share(form, i, [&](double z, int j) { moved += x[j] * z; });
+      auto moved = typename As<X>::Seen(0);
+      each_share(form, i, [&](double z, int j) { moved += As<X>::seen(x[j]) * z; });
       f(moved, least + larger(plain.reduced.size[i], 1e-3 * fastest));
     }
     for (int i = 0; i < form.ns(); ++i) {
       const double most = larger(abs(step0(nz + i)), abs(step1(nz + i)));
-      f(x[nz + i], plain.reduced.floor[i] / plain.options.rtol + most);
+      f(As<X>::seen(x[nz + i]), plain.reduced.floor[i] / plain.options.rtol + most);
     }
   }
   double step0(int i) const { return const_cast<Step<Plain>&>(step).y0()[i]; }
@@ -385,15 +452,16 @@ class Variation {
 
   /// Error of the derivatives in units of the tolerance, each direction of the largest size that it has had.
   /// docs/theory/gradients.md (21)
-  double error_of(const T* missed, const T* end) {
-    constexpr int seen = T::seen;
+  template <class X>
+  double error_of(const X* missed, const X* end) {
+    constexpr int seen = As<X>::count;
     double sum[seen] = {}, worst = 0;
     double* size = ws_.moved.size;
-    each_component(end, [&](const T& x, double of) {
-      for (int j = 0; j < seen; ++j) size[j] = larger(size[j], abs(x.seen_slope(j)) / of);
+    each_component(end, [&](const auto& x, double of) {
+      for (int j = 0; j < seen; ++j) size[j] = larger(size[j], abs(As<X>::at(x, j)) / of);
     });
-    each_component(missed, [&](const T& x, double of) {
-      for (int j = 0; j < seen; ++j) sum[j] += (x.seen_slope(j) / of) * (x.seen_slope(j) / of);
+    each_component(missed, [&](const auto& x, double of) {
+      for (int j = 0; j < seen; ++j) sum[j] += (As<X>::at(x, j) / of) * (As<X>::at(x, j) / of);
     });
     const double count = double(ws_.sys.speeds + form.ns());
     for (int j = 0; j < seen; ++j) {

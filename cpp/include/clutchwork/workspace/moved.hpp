@@ -21,6 +21,11 @@ struct Graze {
 
 inline constexpr int graze_size = 5;
 
+/// Rows of derivatives along a step: the stages come first, then these.
+struct SlopeRow {
+  enum Number : int { start = 8, u, drift, first, last, mix, rhs, count };
+};
+
 /// Of a run with derivatives.
 template <class T>
 struct Moved {
@@ -35,18 +40,21 @@ struct Moved {
   T* points = nullptr;  ///< of the curves
   T* row = nullptr;     ///< one row of output
   int n = 0;
-  Workspace<double>* plain = nullptr;  ///< its image without derivatives
-  double span = 0;                     ///< [s] steps that are taken where an event is met
-  double pace = infinity;              ///< [s] that a step of the derivatives may take
-  std::int64_t parts = 0;              ///< of steps that the derivatives have taken
-  double size[T::seen] = {};           ///< largest that each direction has had, over the size of the motion
-  bool work_left_out = false;          ///< steps are those of a run with work, which has no derivatives here
-  Jacobian<double> other;              ///< of the image, at the other end of a step of the derivatives
-  double* other_whole = nullptr;       ///< the same of the full form
+  Workspace<double>* plain = nullptr;    ///< its image without derivatives
+  double span = 0;                       ///< [s] steps that are taken where an event is met
+  double pace = infinity;                ///< [s] that a step of the derivatives may take
+  std::int64_t parts = 0;                ///< of steps that the derivatives have taken
+  int directions = T::seen;              ///< that are asked for, the first ones
+  double begin = -infinity;              ///< [s] until then nothing moves
+  double size[T::seen] = {};             ///< largest that each direction has had, over the size of the motion
+  bool work_left_out = false;            ///< steps are those of a run with work, which has no derivatives here
+  typename T::Widest* slopes = nullptr;  ///< derivatives alone along a step: rows of the length of the motion
+  Jacobian<double> other;                ///< of the image, at the other end of a step of the derivatives
+  double* other_whole = nullptr;         ///< the same of the full form
 
   template <class P, class A>
   static void lay_out(P& p, A& a, const Sizes& s) {
-    a.scratch(p.row, s.row);
+    a.scratch(p.row, s.row), a.scratch(p.slopes, SlopeRow::count * (s.speeds + s.states));
     const auto unknowns = s.full ? s.speeds + s.states : 0;
     Jacobian<double>::lay_out(p.other, a, s), a.scratch(p.other_whole, unknowns * unknowns);
     a.scratch(p.event, EventBuffer::room + 2 * s.contacts), a.scratch(p.graze, room);
