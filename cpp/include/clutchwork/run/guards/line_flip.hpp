@@ -58,9 +58,11 @@ struct LineFlip {
   static void settle(Phase& phase, const Hit& hit) {
     auto& ws = phase.ws();
     const int c = ws.sys.load_contact[hit.index];
-    if (events_crowd(ws, component(ws, hit))) return phase.leave(Status::zeno);
+    const bool crowds = events_crowd(ws, component(ws, hit));
     ws.loads.line[hit.index] = 1 - ws.loads.line[hit.index];
-    if (phase.is_balanced()) return phase.go_on_as_before();
+    const bool balanced = phase.is_balanced();
+    if (crowds) return phase.leave(balanced ? Status::zeno : Status::unbalanced);
+    if (balanced) return phase.go_on_as_before();
     ws.loads.jammed = c;
     phase.decide(Cause::jam, c);
   }
