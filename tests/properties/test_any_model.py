@@ -44,6 +44,7 @@ def test_every_kind_is_drawn(kind: str) -> None:
 # seeds that fail for a cause that is known and not mended, by what it is
 OPEN: dict[str, set[int]] = {
     "two cams that drive one another beyond a dead point": {1142},
+    "a row behind a jam at a dead point, where another event falls into the step of the jam": {320499},
     "a lag that begins with a speed, of a start that is later": {70044},
 }
 
@@ -113,7 +114,7 @@ MENDED: dict[str, list[int]] = {
     "a load that died away with a state": [320168],
     "a slip zero beside a transmission, found on the interpolant": [320743],
     "a pole of a locked contact beside a ratio": [70209],
-    "two cams or cranks on one mass at a dead point": [60504, 320499],
+    "two cams or cranks on one mass at a dead point": [60504],
     "a dead point in front of what is held": [60197, 320435, 320547, 320597],
     "a sign law that turned at events of another contact": [320124],
     "rows beside a sign that is taken at its word": [50238, 60458],

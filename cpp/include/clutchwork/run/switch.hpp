@@ -258,9 +258,7 @@ Status switch_modes(Workspace<T>& ws) {
   const bool at_start = ws.happened.cause == Cause::initial;
   // bounces end by their own rule. docs/theory/play.md, rule 2
   const bool bounces = ws.happened.cause == Cause::impact && ws.time > ws.contact.met_at[located];
-  // one that jams again and again is not stopped by its impulses
-  if (located >= 0 && !bounces && events_crowd(ws, ne + located))
-    return ws.happened.cause == Cause::jam ? Status::unbalanced : Status::zeno;
+  if (located >= 0 && !bounces && events_crowd(ws, ne + located)) return crowded(ws);
   for (int c = 0; c < ws.sys.contacts; ++c) ws.contact.struck[c] = 0;
   ws.detail.component = located >= 0 ? ne + located : -1;
   if (ws.statistics.events > ws.options.max_events) return Status::too_many_events;

@@ -58,11 +58,9 @@ struct LineFlip {
   static void settle(Phase& phase, const Hit& hit) {
     auto& ws = phase.ws();
     const int c = ws.sys.load_contact[hit.index];
-    const bool crowds = events_crowd(ws, component(ws, hit));
+    if (events_crowd(ws, component(ws, hit))) return phase.leave(crowded(ws));
     ws.loads.line[hit.index] = 1 - ws.loads.line[hit.index];
-    const bool balanced = phase.is_balanced();
-    if (crowds) return phase.leave(balanced ? Status::zeno : Status::unbalanced);
-    if (balanced) return phase.go_on_as_before();
+    if (phase.is_balanced()) return phase.go_on_as_before();
     ws.loads.jammed = c;
     phase.decide(Cause::jam, c);
   }
