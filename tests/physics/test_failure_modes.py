@@ -463,3 +463,16 @@ def test_double_crossings_within_a_step() -> None:
         held(d, "b", a, kinetic=2.0)
         run = d.simulate(2.0, rtol=1e-3, atol=1e-5)
         assert [s[2:] for s in switches(run)] == [("forward", "locked"), ("locked", "forward")], depth
+
+
+def test_a_sign_law_chatters_where_an_open_clutch_passes_zero_with_it() -> None:
+    """Each of its reversals is an event of the clutch beside it too: they count all the same."""
+    d = cw.Driveline("beside")
+    a = d.shaft("a", inertia=0.1, speed=3.0)
+    law = cw.NaiveSign(static=0.3, kinetic=0.3, speed=1.0)
+    d.add(cw.Brake("signs", shaft=a, friction=law, gain=1.0, normal_force=10.0))
+    d.add(cw.Brake("open", shaft=a, friction=cw.Coulomb(static=0.3, kinetic=0.3), gain=1.0, normal_force=0.0))
+    with pytest.warns(cw.StoppedEarly):
+        run = d.simulate(1.0, max_steps=5000)
+    assert run.status == "chatter"
+    assert "'signs'" in run.message

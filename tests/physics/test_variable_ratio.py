@@ -204,3 +204,27 @@ def test_a_ratio_that_leaves_zero_beside_the_housing_goes_on_at_rest():
     d.add(cw.VariableGear("gear", input=d.housing, output=a, ratio=cw.Step(height=-0.4, start=0.5)))
     d.add(cw.Torque("push", shaft=a, torque=cw.Step(height=5.0, start=0.6)))
     assert d.simulate(1.0)["a.speed"][-1] == 0.0
+
+
+@pytest.mark.parametrize("capacity", [200.0, 20000.0])
+def test_it_slips_before_a_ratio_at_which_it_holds_nothing(capacity):
+    """Both sides on the housing, its carrier is held by 1 - ratio of its torque: by nothing where the ratio passes 1.
+    Nothing moves up to there, so steps are long, and the torques at their ends are far from the capacity."""
+    push, begin, duration = 30.0, 4.0, 0.1
+    d = cw.Driveline("carrier")
+    a = d.shaft("a", inertia=1.0)
+    d.add(cw.Torque("push", shaft=a, torque=push))
+    ramp = cw.Ramp(offset=begin, height=-2.0 * begin, duration=duration)
+    d.add(cw.VariableRatio("v", input=d.housing, output=d.housing, support=a, ratio=ramp, capacity=capacity))
+    run = d.simulate(duration, output="steps")
+    leaves, turns, grips = run.events.changes()
+    rate = 2.0 * begin / duration
+    # it leaves where the torque push/(ratio - 1) reaches the capacity; from there the acceleration is push less
+    # capacity |ratio - 1|, and the speed zero again after 1 + sqrt(2) of the way to the pole behind it
+    pole, way = (begin - 1.0) / rate, push / capacity / rate
+    assert leaves.time == pytest.approx(pole - way, abs=1e-6 * way)
+    assert turns.time == pytest.approx(pole, abs=1e-6 * way)
+    assert grips.time == pytest.approx(pole + (1.0 + np.sqrt(2.0)) * way, abs=1e-6 * way)
+    assert [one.cause for one in (leaves, turns, grips)] == ["torque limit", "slip zero", "slip zero"]
+    assert np.max(abs(run["v.torque"])) <= capacity * (1.0 + 1e-6)
+    clean(run)

@@ -44,6 +44,7 @@ def test_every_kind_is_drawn(kind: str) -> None:
 # seeds that fail for a cause that is known and not mended, by what it is
 OPEN: dict[str, set[int]] = {
     "two cams that drive one another beyond a dead point": {1142},
+    "a row behind a jam at a dead point, where another event falls into the step of the jam": {320499},
     "a lag that begins with a speed, of a start that is later": {70044},
 }
 
@@ -112,6 +113,12 @@ MENDED: dict[str, list[int]] = {
     "a belt of any force": [80583],
     "a load that died away with a state": [320168],
     "a slip zero beside a transmission, found on the interpolant": [320743],
+    "a pole of a locked contact beside a ratio": [70209],
+    "two cams or cranks on one mass at a dead point": [60504],
+    "a dead point in front of what is held": [60197, 320435, 320547, 320597],
+    "a sign law that turned at events of another contact": [320124],
+    "rows beside a sign that is taken at its word": [50238, 60458],
+    "rows that are as good as their tolerance": [50556, 60301, 310153],
 }
 
 
@@ -203,3 +210,15 @@ def test_a_wrong_state_is_seen() -> None:
         changed = run.rows.copy()
         changed[:, column] *= factor
         assert kind in {fault.kind for fault in rows.faults(replace(run, rows=changed))}
+
+
+def test_what_jams_beside_a_dead_point_is_there() -> None:
+    """A cam may jam at a dead point; one whose last row is elsewhere may not."""
+    made = model.model(60197)
+    run = agree.run(made)
+    assert run.status == "unbalanced"
+    assert not judge.ending(made, run)
+    moved = run.rows.copy()
+    columns, nodes = run.wiring.columns["speed"], [node.name for node in run.wiring.nodes]
+    moved[-1, columns.start + nodes.index("m0")] = 1.0
+    assert judge.ending(made, replace(run, rows=moved))

@@ -26,6 +26,7 @@ WITH_VALUE = ("not_finite", "out_of_table", "chatter")
 # what cannot go on where nothing moves any more, and what to do about it where that is something of its own
 JAMS = {
     "freewheel": ("prescribed speeds turn a freewheel backward", ""),
+    "turned": ("a transmission whose ratio leaves it no other way turns a freewheel backward", ""),
     "stop": ("prescribed speeds go beyond a stop", ""),
     "ratio": ("prescribed or initial speeds break the ratio of a transmission", ""),
     "light": (
@@ -87,7 +88,7 @@ def explain(status: int, component: Any, time: float, value: float, quantity: st
 def jam_of(system: System, component: Any, index: int) -> str:
     """Which of `JAMS` it is where a component with a number jams."""
     if component.role is Role.CONTACT:
-        return "stop" if is_stop(component) else "freewheel"
+        return "stop" if is_stop(component) else "freewheel" if len(system.prescribed_input) else "turned"
     places = np.flatnonzero(system.transmission_element == index)
     return "light" if any(system.transmission_speed[places] >= 0) else "ratio"
 

@@ -106,6 +106,13 @@ class Seen:
         return list(groups.values())
 
     @cached_property
+    def chatters(self) -> bool:
+        """Whether a sign of a slip is taken at its word: torques turn around within steps, and rows at those instants
+        may show either side."""
+        laws = (branch.component.friction for branch in self.wiring.contacts)
+        return any("chatters" in getattr(law, "hooks", ()) for law in laws)
+
+    @cached_property
     def kinds(self) -> dict[str, str]:
         """Kind of every element of the model by name."""
         return {element.name: element.kind for element in self.run.system.source.elements}

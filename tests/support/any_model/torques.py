@@ -112,7 +112,9 @@ def drives(seen: Seen) -> Iterator[Fault]:
     """Friction takes power and never gives any; so do dampers."""
     rate, torque, mode = seen.speed @ seen.contacts, seen.part("contact_torque"), seen.part("contact_mode")
     for number, branch in enumerate(seen.wiring.contacts):
-        if not is_stop(branch.component) and getattr(branch.component.friction, "sticks", True):
+        # where a torque turns around within a step, the row shows a load before it and a torque behind
+        turns = seen.chatters and "bound" in branch.component.hooks
+        if not turns and not is_stop(branch.component) and getattr(branch.component.friction, "sticks", True):
             power = np.where(mode[:, number] == LOCKED, 0.0, rate[:, number] * torque[:, number])
             slack = np.abs(torque[:, number]) * (SPEED * seen.scale(branch) + 1e-7)
             yield from _gives(seen, branch, power, slack)

@@ -350,9 +350,25 @@ void move_followers_whole(const Ratios<T>& r, const Tied<S>& w, S* d) {
   }
 }
 
+/// Of the fastest speed, more than an integration drifts off the ties in a step.
+inline constexpr double most_drift = 1e-2;
+
+/// The transmission that took most energy when speeds were brought onto the ties last; -1: a locked contact did.
+template <class T>
+int hardest_tie(const Ratios<T>& r) {
+  const Tied<T>& w = r.plain;
+  int hardest = -1;
+  double most = 0;
+  for (int t = 0; t < r.ties && r.tie[t] >= 0; ++t) {
+    const double taken = value(w.wanted[t] * w.wanted[t] * w.gram[t * r.ties + t]);
+    if (taken > most) most = taken, hardest = r.tie[t];
+  }
+  return hardest;
+}
+
 /// Speeds y brought onto the ties at the point that was evaluated last, the momentum across them untouched. A
-/// transmission that nothing can keep there, for what ties its speeds is prescribed; -1: none.
-/// docs/theory/varying-ratios.md (9)
+/// transmission that nothing can keep there, for what ties its speeds is prescribed, or that would have to stop by a
+/// jump what has left its ratio; -1: none. docs/theory/varying-ratios.md (9)
 template <class Form, class T = typename Form::Scalar>
 int settle_ties(Form& form, T* y) {
   Workspace<T>& ws = form.ws;
@@ -370,8 +386,15 @@ int settle_ties(Form& form, T* y) {
     w.wanted[t] = wanted_of_tie(r, w, t, own, w.pull);
   }
   solve_ties(r, w, w.wanted);
+  T* missed = w.push;
+  for (int i = 0; i < nz; ++i) missed[i] = y[i];
   for (int t = 0; t < r.ties; ++t) {
     for (int k = 0; k < r.rows; ++k) axpy(nz, w.share[t * r.rows + k] * w.wanted[t], r.along + k * nz, y);
+  }
+  double fastest = 0, moved = 0;
+  for (int i = 0; i < nz; ++i) {
+    fastest = larger(fastest, abs(value(missed[i])));
+    moved = larger(moved, abs(value(y[i] - missed[i])));
   }
   for (int a = 0; a < r.n; ++a) {
     if (r.column[a] < 0) continue;
@@ -383,9 +406,9 @@ int settle_ties(Form& form, T* y) {
     if (value(w.gram[t * r.ties + t]) != 0) continue;
     const int a = r.tie[t];
     const double first = value(rate(2 * a)), second = value(w.ratio[a] * rate(2 * a + 1));
-    if (abs(first - second) > 1e3 * ws.guard.zero + most * (abs(first) + abs(second))) return a;
+    if (abs(first - second) > 10 * ws.guard.zero + most * (abs(first) + abs(second))) return a;
   }
-  return -1;
+  return moved > 1e3 * ws.guard.zero + most_drift * fastest ? hardest_tie(r) : -1;
 }
 
 /// Product of the row of transmission a at one ratio with its row at another, in the mobility of the reduced speeds.

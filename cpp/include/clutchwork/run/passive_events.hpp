@@ -131,9 +131,12 @@ bool chatters(Workspace<T>& ws) {
   if (steps - ws.guard.reversals_since > window) ws.guard.reversals_since = steps, ws.guard.reversals = 0;
   for (int i = 0; i < ws.guard.n_chattering; ++i) {
     const int k = ws.guard.chattering[i];
-    // a slip that was driven through zero goes on; one that chatters is pushed back
     const double rate = value(ws.here.rate[k]);
-    if (rate * value(ws.there.rate[k]) >= 0 || rate * value(ws.here.slope[k]) >= 0) continue;
+    int& heading = ws.heading[ws.branch[k].direction];
+    if (rate * heading >= 0) continue;
+    heading = -heading;
+    // a slip that was driven through zero goes on; one that chatters is pushed back
+    if (rate * value(ws.here.slope[k]) >= 0) continue;
     ws.detail.component = ws.branch[k].direction;
     ws.detail.value = rate;
     if (++ws.guard.reversals > most) return true;

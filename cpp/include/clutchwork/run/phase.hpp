@@ -170,6 +170,7 @@ class Phase : public Pace<typename Form::Scalar> {
   void go_on(bool jumped) {
     look_on();
     if (jumped && is_beyond(taken_form().ws)) return decide(Cause::other_event);
+    if (ws_.guard.n_chattering > 0 && chatters(ws_)) return leave(Status::chatter);
     show_behind(false);
     h_ = ws_.last_step;
   }

@@ -134,7 +134,8 @@ Status settle_once(Workspace<T>& ws, int located) {
         return Status::unbalanced;
       case Settled::jams:
         ws.detail.component = int(ws.sys.elements) + verdict.contact;
-        return Status::jammed;
+        if (!(value(freewheel_limit(ws, verdict.contact)) < infinity)) return Status::jammed;
+        [[fallthrough]];
       case Settled::gives_way:
         fail(ws, verdict.contact);
     }
@@ -257,7 +258,7 @@ Status switch_modes(Workspace<T>& ws) {
   const bool at_start = ws.happened.cause == Cause::initial;
   // bounces end by their own rule. docs/theory/play.md, rule 2
   const bool bounces = ws.happened.cause == Cause::impact && ws.time > ws.contact.met_at[located];
-  if (located >= 0 && !bounces && events_crowd(ws, ne + located)) return Status::zeno;
+  if (located >= 0 && !bounces && events_crowd(ws, ne + located)) return crowded(ws);
   for (int c = 0; c < ws.sys.contacts; ++c) ws.contact.struck[c] = 0;
   ws.detail.component = located >= 0 ? ne + located : -1;
   if (ws.statistics.events > ws.options.max_events) return Status::too_many_events;

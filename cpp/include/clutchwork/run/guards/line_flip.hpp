@@ -58,7 +58,7 @@ struct LineFlip {
   static void settle(Phase& phase, const Hit& hit) {
     auto& ws = phase.ws();
     const int c = ws.sys.load_contact[hit.index];
-    if (events_crowd(ws, component(ws, hit))) return phase.leave(Status::zeno);
+    if (events_crowd(ws, component(ws, hit))) return phase.leave(crowded(ws));
     ws.loads.line[hit.index] = 1 - ws.loads.line[hit.index];
     if (phase.is_balanced()) return phase.go_on_as_before();
     ws.loads.jammed = c;

@@ -49,6 +49,39 @@ double rigid_departure(Form& form, Step<Form>& step, int a, double limit) {
   return first_crossing(f, f(0), f(1), limit);
 }
 
+/// Whether the torque of a locked contact passes from one sign to the other in the step and grows towards it from both
+/// ends. docs/theory/varying-ratios.md (22)
+template <class T>
+bool has_pole(const Workspace<T>& ws, int a) {
+  const double before = value(ws.here.multiplier[a]), after = value(ws.there.multiplier[a]);
+  return before * after < 0 && before * value(ws.here.drift[a]) > 0 && after * value(ws.there.drift[a]) < 0;
+}
+
+/// Where such a torque leaves what the contact holds, on its way to the pole; -1: not before `limit`.
+template <class Form>
+[[gnu::noinline]] double before_pole(Form& form, Step<Form>& step, int a, double margin_at_start, double limit) {
+  constexpr int halvings = 40;
+  auto& ws = form.ws;
+  auto f = [&](double s) {
+    torques_at(form, step, s);
+    return margin_seen(ws, a);
+  };
+  const double sign = value(ws.here.multiplier[a]);
+  double low = 0, above = larger(margin_at_start, 0.0), high = 1;
+  for (int k = 0; k < halvings; ++k) {
+    const double middle = 0.5 * (low + high), margin = f(middle);
+    if (margin < 0) {
+      const double s = locate(f, low, above, middle, margin);
+      return s <= limit ? s : -1;
+    }
+    if (sign * value(ws.seen.carried[a]) > 0)
+      low = middle, above = margin;
+    else
+      high = middle;
+  }
+  return -1;
+}
+
 /// How far a locked contact is from slipping.
 template <class T>
 T distance_from_slip(const Workspace<T>& ws, int c, T torque) {
@@ -85,7 +118,12 @@ struct TorqueLimit {
       double before, after;
       const bool holds = holds_on(ws, a, step.h, before, after);
       // up to where a capacity bends, the end of the step says nothing
-      if (holds && !hit.bends) continue;
+      const bool pole = ws.ratios.n > 0 && has_pole(ws, a);
+      if (holds && !hit.bends && !pole) continue;
+      if (pole) {
+        fit(form, step);
+        hit.take(before_pole(form, step, a, before, hit.s), a);
+      }
       watched[n++] = a;
       m0 = smaller(m0, before + more_noise(ws, a, ws.here.capacity[a]));
       m1 = smaller(m1, after + more_noise(ws, a, ws.there.capacity[a]));

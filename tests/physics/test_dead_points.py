@@ -1,0 +1,83 @@
+"""Cranks and cams that turn at a dead point against what is held: they jam, or what holds gives way.
+
+docs/theory/varying-ratios.md
+"""
+
+from __future__ import annotations
+
+from math import pi
+
+import pytest
+
+import clutchwork as cw
+from clutchwork.run.failure import JAMS
+
+
+def crank(speed: float) -> tuple[cw.Driveline, cw.Node]:
+    """A crank that turns at its outer dead point, so that its mass must go backward."""
+    d = cw.Driveline("crank")
+    shaft, mass = d.shaft("shaft", inertia=1.0, speed=speed), d.mass("mass", mass=1.0)
+    d.add(cw.CrankSlider("crank", shaft=shaft, mass=mass, radius=0.01, rod=1.0))
+    return d, mass
+
+
+def test_a_sprag_in_front_of_a_crank_rolls_over() -> None:
+    """The force of a crank grows beyond all bounds towards its dead point."""
+    d, mass = crank(2.0)
+    d.add(cw.SpragClutch("sprag", base=d.housing, follower=mass, holding=1e3))
+    run = d.simulate(0.1)
+    (event,) = run.events
+    assert (event.element, event.cause, event.time) == ("sprag", "fault", 0.0)
+    # nothing else takes power: what the crank has is shared by both, as well as the tolerance of 1e-6 keeps it
+    assert 0.5 * (run["shaft.speed"] ** 2 + run["mass.speed"] ** 2) == pytest.approx(2.0, rel=1e-5)
+
+
+def test_a_freewheel_in_front_of_a_crank_jams_and_says_why() -> None:
+    d, mass = crank(2.0)
+    d.add(cw.OneWayClutch("blocks", base=d.housing, follower=mass))
+    with pytest.warns(cw.StoppedEarly):
+        run = d.simulate(0.1)
+    assert run.status == "jammed"
+    assert f"{JAMS['turned'][0]} at 'blocks'" in run.message
+
+
+def test_a_screw_that_its_nut_cannot_turn_has_no_torques_before_a_crank() -> None:
+    d, mass = crank(2.0)
+    screw = d.shaft("screw", inertia=1.0)
+    d.add(cw.Leadscrew("nut", screw=screw, mass=mass, lead=0.01, radius=0.01, friction_coefficient=0.5))
+    with pytest.warns(cw.StoppedEarly):
+        run = d.simulate(0.1)
+    assert run.status == "unbalanced"
+    assert "'nut'" in run.message
+
+
+def cams(speed: float) -> cw.Driveline:
+    """Two cams with grooves on one mass, at their lowest points; one shaft turns, the other at a speed of its own."""
+    d = cw.Driveline("cams")
+    mass, rise = d.mass("mass", mass=1.0), 0.05
+    quarters = [k * 0.5 * pi for k in range(5)]
+    # the periodic spline through the five points
+    bend = 12.0 * rise / pi**2
+    for name, start in (("one", 5.0), ("other", speed)):
+        shaft = d.shaft(name, inertia=1.0, speed=start)
+        lift = list(zip(quarters, (0.0, rise, 2.0 * rise, rise, 0.0), strict=True))
+        curvature = (bend, 0.0, -bend, 0.0, bend)
+        d.add(cw.CamProfile(f"{name}.cam", shaft=shaft, mass=mass, lift=lift, curvature=curvature))
+    return d
+
+
+def test_a_cam_at_rest_cannot_start_with_a_mass_that_another_moves() -> None:
+    """At the dead point its ratio is zero, and its shaft has no torque to turn by: no motion keeps both ratios."""
+    with pytest.warns(cw.StoppedEarly):
+        run = cams(0.0).simulate(0.1, output="steps")
+    assert run.status == "jammed"
+    assert JAMS["ratio"][0] in run.message
+    # it ends before the turning shaft is stopped for nothing
+    assert run["one.speed"] == pytest.approx(5.0, rel=1e-6)
+
+
+def test_two_cams_that_start_alike_go_on() -> None:
+    run = cams(5.0).simulate(0.1)
+    assert run.status == "done"
+    # of the speeds, what their tolerance of 1e-6 makes of one
+    assert run["one.speed"] == pytest.approx(run["other.speed"], rel=1e-5)
