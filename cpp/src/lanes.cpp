@@ -19,7 +19,7 @@ constexpr std::int64_t most_contacts = 24;
 constexpr LaneKernel wide{clutchwork_wide_advance, clutchwork_wide_look, clutchwork_wide_doubt};
 #endif
 #ifndef CLUTCHWORK_WIDE_ALONE
-constexpr LaneKernel narrow{LaneStep<2>::advance, LaneStep<2>::look, LaneStep<2>::doubt};
+constexpr LaneKernel narrow{LaneStep<2>::advance, LaneStep<2>::linearize_at, LaneStep<2>::doubt};
 #endif
 
 /// The widest registers that this processor has; null: none of those that are compiled.

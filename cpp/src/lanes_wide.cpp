@@ -18,6 +18,6 @@ using Wide = clutchwork::LaneStep<4>;
 void clutchwork_wide_advance(void* form, void* step, void* error, void* finite) {
   Wide::advance(form, step, error, finite);
 }
-void clutchwork_wide_look(void* form, void* step, const void* times) { Wide::look(form, step, times); }
+void clutchwork_wide_look(void* form, void* step, const void* times) { Wide::linearize_at(form, step, times); }
 void clutchwork_wide_doubt(void* form, void* step, void* doubtful) { Wide::doubt(form, step, doubtful); }
 #endif

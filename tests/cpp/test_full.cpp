@@ -41,7 +41,7 @@ void jacobian() {
   Numbers y(ws.reduced.y, ws.reduced.y + n), d(y), dt(y), up(y), down(y), at(y);
   form.solve_mass(y.data());
   at = y;
-  linearize(form, 0.0, y.data(), d.data(), dt.data(), ws.here);
+  linearize(form, 0.0, y.data(), d.data(), dt.data(), ws.step_start);
   const Numbers jacobian(ws.full.jacobian, ws.full.jacobian + n * n);
   auto compare = [&](int i, double found, double h) {
     const double slope = (up[std::size_t(i)] - down[std::size_t(i)]) / (2 * h);
@@ -79,8 +79,8 @@ void drift() {
   const int n = form.n(), nz = form.nz();
   Numbers y(ws.reduced.y, ws.reduced.y + n), d(y), dt(y);
   form.solve_mass(y.data());
-  linearize(form, 0.0, y.data(), d.data(), dt.data(), ws.here);
-  Numbers slope = d, at(y), torque(ws.seen.torque, ws.seen.torque + ws.n_branches), found(torque), up(torque),
+  linearize(form, 0.0, y.data(), d.data(), dt.data(), ws.step_start);
+  Numbers slope = d, at(y), torque(ws.observed.torque, ws.observed.torque + ws.n_branches), found(torque), up(torque),
           down(torque);
   form.solve_mass(slope.data());
   drift_whole(form, y.data(), slope.data(), slope.data() + nz, torque.data(), found.data());
@@ -88,7 +88,7 @@ void drift() {
   auto along = [&](double t, Numbers& out) {
     for (int i = 0; i < n; ++i) at[std::size_t(i)] = y[std::size_t(i)] + t * slope[std::size_t(i)];
     observe(form, t, at.data(), d.data());
-    for (int k = 0; k < ws.n_branches; ++k) out[std::size_t(k)] = ws.seen.torque[k];
+    for (int k = 0; k < ws.n_branches; ++k) out[std::size_t(k)] = ws.observed.torque[k];
   };
   along(h, up), along(-h, down);
   for (std::size_t k = 0; k < found.size(); ++k) {

@@ -35,7 +35,7 @@ struct Workspace {
 
   Signals<T> in;
   Contacts<T> contact;
-  Happened<T> happened;
+  EventContext<T> event_context;
   Held<T> held;
   Loads<T> loads;
   CoupledMemory<T> coupled;
@@ -50,9 +50,9 @@ struct Workspace {
   Stages<T> stages;
   Full<T> full;
   Ratios<T> ratios;
-  Edge<T> here{}, there{};
+  StepEnd<T> step_start{}, step_end{};
   Guards guard;
-  Seen<T> seen;
+  Observed<T> observed;
   Output<T> out;
   EventBuffer events;
   [[no_unique_address]] Moved<T> moved;
@@ -80,9 +80,9 @@ void lay_out(W& ws, A& a) {
   a.keep(ws.piece, n.directions, -(1ll << 31), (1ll << 31) - 1), a.keep(ws.heading, n.directions, backward, forward);
   a.take(ws.branch, n.directions), a.take(ws.branch_of, n.directions);
   auto each = [&](auto&... part) { (std::remove_reference_t<decltype(part)>::lay_out(part, a, n), ...); };
-  each(ws.in, ws.contact, ws.happened, ws.held, ws.loads, ws.coupled, ws.set, ws.problem, ws.decision, ws.geometry,
-       ws.reduced, ws.rows, ws.jacobian, ws.shared, ws.stages, ws.full, ws.ratios, ws.here, ws.there, ws.guard, ws.seen,
-       ws.out, ws.events, ws.moved);
+  each(ws.in, ws.contact, ws.event_context, ws.held, ws.loads, ws.coupled, ws.set, ws.problem, ws.decision, ws.geometry,
+       ws.reduced, ws.rows, ws.jacobian, ws.shared, ws.stages, ws.full, ws.ratios, ws.step_start, ws.step_end, ws.guard,
+       ws.observed, ws.out, ws.events, ws.moved);
 }
 
 /// Lay the arrays of a workspace into memory; returns the size needed.

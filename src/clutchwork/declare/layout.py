@@ -243,8 +243,8 @@ STATUS = (
     ("bad_system", "the system bytes do not fit this core", "assemble the driveline again with this version"),
     (
         "jammed",
-        "prescribed speeds turn a freewheel backward or go beyond a stop, they or initial speeds break the ratio of "
-        "a transmission, or a ratio is zero before a shaft without inertia",
+        "prescribed speeds or ratios turn a freewheel backward or go beyond a stop, they or initial speeds break the "
+        "ratio of a transmission, or a ratio is zero before a shaft without inertia",
         "prescribe speeds that it allows, or put a shaft with inertia and a spring in between",
     ),
     (

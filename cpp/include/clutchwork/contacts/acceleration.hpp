@@ -24,7 +24,7 @@ void free_motion(Workspace<T>& ws, const int* candidate, T* q) {
       ws.coupled.given[l] += ws.loads.by_slope[l * sys.prescribed + p] * ws.in.prescribed_slope[p];
   }
   auto add = [&](T size, int d) {
-    ws.geometry.white.add(d, size, q);
+    ws.geometry.mass_weighted.add(d, size, q);
     for (int l = 0; l < sys.loads; ++l) ws.coupled.given[l] += ws.loads.by_torque[l * ws.n_directions + d] * size;
     ws.decision.effort += abs(value(size)) * sqrt(value(ws.geometry.own[d]));
     ws.decision.pull += abs(value(size));
@@ -44,11 +44,11 @@ void free_motion(Workspace<T>& ws, const int* candidate, T* q) {
     if (b.ways != 1) {
       T torque[most_ways];
       const PresentRates<T> rate(ws, b);
-      if (b.ways > 0) element_torques(ws, b, rate.at, ws.state + b.state, b.input, ws.seen.state_rates, torque);
+      if (b.ways > 0) element_torques(ws, b, rate.at, ws.state + b.state, b.input, ws.observed.state_rates, torque);
       for (int i = 0; i < b.ways; ++i) add(torque[i], d + i);
       continue;
     }
-    add(branch_torque_once(ws, b, rate_of(ws, d), ws.state, ws.seen.state_rates), d);
+    add(branch_torque_once(ws, b, rate_of(ws, d), ws.state, ws.observed.state_rates), d);
   }
   if (!ws.ratios.inside) return;
   accelerate_rows(ws, q);
@@ -59,7 +59,7 @@ void free_motion(Workspace<T>& ws, const int* candidate, T* q) {
 /// Acceleration along a direction for mass-weighted acceleration q; that of the slip of a contact.
 template <class T>
 T acceleration_along(const Workspace<T>& ws, int d, const T* q) {
-  T a = ws.geometry.white.times(d, q);
+  T a = ws.geometry.mass_weighted.times(d, q);
   for (int p = 0; p < ws.sys.prescribed; ++p) a += prescribed_share(ws, d, p) * ws.in.prescribed_slope[p];
   return ws.ratios.inside ? a + pulled(ws, d) : a;
 }

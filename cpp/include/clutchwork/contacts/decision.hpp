@@ -43,14 +43,14 @@ Choice choice_of(Workspace<T>& ws, int c, double slip, double tolerance, bool hi
   int &mode = ws.contact.mode[c], &forced = ws.contact.forced[c];
   const bool rigid = is_rigid(ws, c);
   // prescribed speeds have parted: there is no choice
-  if (hit && ws.happened.cause == Cause::torque_limit && rigid) {
+  if (hit && ws.event_context.cause == Cause::torque_limit && rigid) {
     const double parting = slip != 0 ? slip : value(slip_slope(ws, c));
     if (parting * free_way(ws, c) < 0) return Choice::jams;
     mode = forced = parting < 0 ? backward : forward;
     return Choice::slips;
   }
   const bool still = mode == locked && !rigid,
-             arrived = hit && ws.happened.cause != Cause::input && (!rigid || is_tied(ws, c));
+             arrived = hit && ws.event_context.cause != Cause::input && (!rigid || is_tied(ws, c));
   const bool rests = still || arrived || abs(slip) <= tolerance;
   if (rests && forced == 0) return Choice::sticks;
   mode = rests ? forced : slip > 0 ? forward : backward;
@@ -134,8 +134,8 @@ double slope_noise(const Workspace<T>& ws, const BoundedProblem<T>& p, int a, in
   p.matrix.each(a, [&](int b, T g) { scale = larger(scale, abs(value(g * p.x[b]))); });
   const double mobility = value(sqrt(p.matrix.diagonal[a]));
   const double round_off = larger(1e-10 * scale, 1e-12 * ws.decision.effort * mobility);
-  const bool arrived = c == located && ws.happened.cause == Cause::slip_zero;
-  const bool jammed = c == ws.happened.contact && ws.happened.cause == Cause::jam;
+  const bool arrived = c == located && ws.event_context.cause == Cause::slip_zero;
+  const bool jammed = c == ws.event_context.contact && ws.event_context.cause == Cause::jam;
   // twice what the guard of the load concedes
   if (jammed) return larger(round_off, 2e-12 * ws.decision.pull * mobility * mobility);
   return arrived ? larger(round_off, 1e3 * tolerance) : round_off;
@@ -183,7 +183,7 @@ template <class T>
 int turned_back(Workspace<T>& ws, const BoundedProblem<T>& p) {
   const int ne = int(ws.sys.elements);
   T* q = ws.decision.motion;
-  for (int a = 0; a < p.n; ++a) ws.geometry.white.add(ne + ws.decision.list[a], p.x[a], q);
+  for (int a = 0; a < p.n; ++a) ws.geometry.mass_weighted.add(ne + ws.decision.list[a], p.x[a], q);
   for (int c = 0; c < ws.sys.contacts; ++c) {
     if (ws.decision.released[c] != 1) continue;
     const double noise = 1e-12 * ws.decision.effort * value(sqrt(ws.geometry.own[ne + c]));
@@ -322,7 +322,7 @@ int release_driven(Workspace<T>& ws, double tolerance) {
   return -1;
 }
 
-/// Whether a carrier of no set holds what it carries, in a decision.
+/// Whether an independent contact of no set holds what it carries, in a decision.
 template <class T>
 bool holds_alone(const Workspace<T>& ws, int a) {
   const int c = ws.held.contact[a], way = free_way(ws, c);
@@ -364,21 +364,22 @@ bool hold_together(Workspace<T>& ws, double tolerance) {
     holds = value(set_room(ws, 0, h.carried, T(0), ws.loads.now)) >= -1e-11;
     for (int a = 0; a < h.n; ++a) holds = holds && (h.in_set[a] != 0 || holds_alone(ws, a));
     for (int a = 0; a < h.n; ++a)
-      ws.geometry.white.add(int(sys.elements) + h.contact[a], h.carried[a], ws.decision.motion);
-    for (int s = 0; s < h.n_spare; ++s)
-      holds = holds && abs(value(slip_acceleration(ws, h.spare[s], ws.decision.motion))) <= 1e6 * tolerance;
+      ws.geometry.mass_weighted.add(int(sys.elements) + h.contact[a], h.carried[a], ws.decision.motion);
+    for (int s = 0; s < h.n_redundant; ++s)
+      holds = holds && abs(value(slip_acceleration(ws, h.redundant[s], ws.decision.motion))) <= 1e6 * tolerance;
   }
   for (int c = 0; !holds && c < sys.contacts; ++c) ws.contact.mode[c] = before[c];
   if (!holds) return false;
   for (int a = 0; a < h.n; ++a) ws.decision.torque[h.contact[a]] = h.carried[a];
-  for (int s = 0; s < h.n_spare; ++s) ws.decision.torque[h.spare[s]] = T(0);
+  for (int s = 0; s < h.n_redundant; ++s) ws.decision.torque[h.redundant[s]] = T(0);
   return true;
 }
 
-/// Whether prescribed speeds have parted what was held together: the slip of a spare has left zero, however slowly.
+/// Whether prescribed speeds have parted what was held together: the slip of a redundant contact has left zero, however
+/// slowly.
 template <class T>
 bool has_parted(const Workspace<T>& ws, int located) {
-  return located >= 0 && ws.happened.cause == Cause::torque_limit && ws.contact.forced[located] == 0;
+  return located >= 0 && ws.event_context.cause == Cause::torque_limit && ws.contact.forced[located] == 0;
 }
 
 /// Torques of the candidates, and of what slips and follows loads. False: they were not found.

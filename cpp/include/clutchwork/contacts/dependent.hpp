@@ -7,8 +7,8 @@
 /// What contacts whose directions depend on each other hold together, and the share of each: docs/theory/contacts.md.
 namespace clutchwork {
 
-/// One set of n locked contacts. The first `rank` of them, the carriers, are independent; column i tells contact i in
-/// terms of them, so that the torques x hold the load when the sum of x[i] times column i is the load.
+/// One set of n locked contacts. The first `rank` of them are independent; column i expresses
+/// contact i in terms of them, so that the torques x hold the load when the sum of x[i] times column i is the load.
 template <class T>
 struct DependentSet {
   int n, rank;
@@ -109,7 +109,7 @@ struct LimitLoad {
   int width() const { return set.n + 1; }
   int rows() const { return set.rank; }
 
-  /// The carriers are the first basis; no torque, no load.
+  /// The independent contacts are the first basis; no torque, no load.
   void start() {
     for (int j = 0; j < width(); ++j) x[j] = price[j] = T(0), place[j] = -1;
     price[set.n] = T(1);

@@ -59,7 +59,7 @@ void apply_impulses(Workspace<T>& ws, const BoundedProblem<T>& p, const int* lis
   T* x = ws.decision.speed;
   for (int i = 0; i < nv; ++i) x[i] = T(0);
   for (int a = 0; a < p.n; ++a) {
-    ws.geometry.white.add(ne + list[a], p.x[a], x);
+    ws.geometry.mass_weighted.add(ne + list[a], p.x[a], x);
     // work of an impulse: impulse times mean slip
     const T work = p.x[a] * (p.gradient[a] + p.slope[a]) * T(0.5);
     ws.work[ne + list[a]] += work;

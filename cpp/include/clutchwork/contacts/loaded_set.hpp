@@ -46,7 +46,7 @@ struct LoadedLimit {
     for (int j = 0; j < set.n; ++j) r[j] = -slope * share(l, j);
     r[own] += T(-direction);
     r[w - 1] = -slope * ws.loads.outer[l] / size;
-    // the carriers are basic in their own rows
+    // the independent contacts are basic in their own rows
     for (int c = 0; c < set.rank; ++c) {
       const T factor = r[c];
       for (int j = 0; j < w; ++j) r[j] -= factor * tableau[c * w + j];

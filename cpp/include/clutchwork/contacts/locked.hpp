@@ -10,24 +10,25 @@
 #include <clutchwork/contacts/sticking.hpp>
 #include <clutchwork/workspace.hpp>
 
-/// The locked contacts of the present mode: carriers, spares, and the sets that they make. docs/theory/contacts.md
+/// The locked contacts of the present mode: independent ones, redundant ones, and the sets that they make.
+/// docs/theory/contacts.md
 namespace clutchwork {
 
-/// Factor of the mobility of the carriers, in the order of their places.
+/// Factor of the mobility of the independent contacts, in the order of their places.
 template <class T>
 bool factor_mobility(Workspace<T>& ws) {
   Held<T>& h = ws.held;
   const Geometry<T>& g = ws.geometry;
-  int *carrier = h.at, *row = h.row, m = 0;
+  int *independent = h.at, *row = h.row, m = 0;
   const int nc = int(ws.sys.contacts);
   h.near.whole = g.near.whole;
-  for (int q = 0; q < nc; ++q) carrier[q] = -1;
-  for (int a = 0; a < h.n_fixed; ++a) carrier[g.place[h.contact[a]]] = a;
+  for (int q = 0; q < nc; ++q) independent[q] = -1;
+  for (int a = 0; a < h.n_fixed; ++a) independent[g.place[h.contact[a]]] = a;
   for (int q = 0; q < nc; ++q) {
     row[q] = m;
-    if (carrier[q] < 0) continue;
+    if (independent[q] < 0) continue;
     h.near.low[m] = h.near.whole ? 0 : row[g.near.low[q]];
-    h.turn[m++] = carrier[q];
+    h.turn[m++] = independent[q];
   }
   h.near.lay(m);
   for (int a = 0; a < m; ++a) {
@@ -39,7 +40,7 @@ bool factor_mobility(Workspace<T>& ws) {
   return cholesky(m, h.near, h.factor);
 }
 
-/// Torques x of the carriers for slip accelerations b: mobility x = b.
+/// Torques x of the independent contacts for slip accelerations b: mobility x = b.
 template <class T>
 void solve_locked(const Workspace<T>& ws, const T* b, T* x) {
   const Held<T>& h = ws.held;
@@ -69,21 +70,22 @@ bool holds_loads(const Workspace<T>& ws) {
   return false;
 }
 
-/// Whether the torque of a carrier depends on how spares share it.
+/// Whether the torque of an independent contact depends on how redundant contacts share it.
 template <class T>
 bool is_shared(const Workspace<T>& ws, int a) {
-  for (int s = 0; s < ws.held.n_spare; ++s) {
+  for (int s = 0; s < ws.held.n_redundant; ++s) {
     if (value(ws.held.tie[s * ws.sys.contacts + a]) != 0) return true;
   }
   return false;
 }
 
-/// Label each carrier with the lowest one of its set; where some follow loads, these are one with all that is shared.
+/// Label each independent contact with the lowest one of its set; where some follow loads, these are one with all that
+/// is shared.
 template <class T>
 void join_sets(Workspace<T>& ws, int* label) {
   const int nc = int(ws.sys.contacts);
   for (int a = 0; a < ws.held.n; ++a) label[a] = a;
-  if (ws.held.n_spare > 0 && holds_loads(ws)) {
+  if (ws.held.n_redundant > 0 && holds_loads(ws)) {
     int lowest = -1;
     for (int a = 0; a < ws.held.n; ++a) {
       const int c = ws.held.contact[a];
@@ -93,7 +95,7 @@ void join_sets(Workspace<T>& ws, int* label) {
     }
     return;
   }
-  for (int s = 0; s < ws.held.n_spare; ++s) {
+  for (int s = 0; s < ws.held.n_redundant; ++s) {
     int lowest = -1;
     for (int a = 0; a < ws.held.n; ++a) {
       if (value(ws.held.tie[s * nc + a]) == 0) continue;
@@ -107,14 +109,14 @@ void join_sets(Workspace<T>& ws, int* label) {
   }
 }
 
-/// Write down the sets: carriers first, then spares.
+/// Write down the sets: independent contacts first, then redundant ones.
 template <class T>
 void list_sets(Workspace<T>& ws, const int* label) {
   const int nc = int(ws.sys.contacts);
   int at = 0;
   ws.held.n_sets = 0;
   auto add = [&](int contact, int place) { ws.held.set_member[at] = contact, ws.held.set_place[at++] = place; };
-  // a spare without a carrier is in no set
+  // a redundant contact without independent ones is in no set
   auto label_of = [&](int s) {
     for (int a = 0; a < ws.held.n; ++a) {
       if (value(ws.held.tie[s * nc + a]) != 0) return label[a];
@@ -123,7 +125,7 @@ void list_sets(Workspace<T>& ws, const int* label) {
   };
   for (int root = 0; root < ws.held.n; ++root) {
     int spares = 0;
-    for (int s = 0; s < ws.held.n_spare; ++s) spares += label_of(s) == root;
+    for (int s = 0; s < ws.held.n_redundant; ++s) spares += label_of(s) == root;
     if (spares == 0) continue;
     ws.held.set_first[ws.held.n_sets] = at;
     for (int a = 0; a < ws.held.n; ++a) {
@@ -131,8 +133,8 @@ void list_sets(Workspace<T>& ws, const int* label) {
     }
     ws.held.set_rank[ws.held.n_sets] = at - ws.held.set_first[ws.held.n_sets];
     ++ws.held.n_sets;
-    for (int s = 0; s < ws.held.n_spare; ++s) {
-      if (label_of(s) == root) add(ws.held.spare[s], s);
+    for (int s = 0; s < ws.held.n_redundant; ++s) {
+      if (label_of(s) == root) add(ws.held.redundant[s], s);
     }
     const int size = at - ws.held.set_first[ws.held.n_sets - 1];
     if (!is_few(ws.sys) && ws.sys.loads == 0 && size > ws.sys.set_size) ws.held.too_many = true;
@@ -140,12 +142,12 @@ void list_sets(Workspace<T>& ws, const int* label) {
   ws.held.set_first[ws.held.n_sets] = at;
 }
 
-/// Share of prescribed speed p in the slip of spare s while the carriers are locked.
+/// Share of prescribed speed p in the slip of redundant contact s while the independent contacts are locked.
 template <class T>
 double driven_share(const Workspace<T>& ws, int s, int p) {
   const int nc = int(ws.sys.contacts), ne = int(ws.sys.elements);
-  double size = abs(value(prescribed_share(ws, ne + ws.held.spare[s], p)));
-  T share = prescribed_share(ws, ne + ws.held.spare[s], p);
+  double size = abs(value(prescribed_share(ws, ne + ws.held.redundant[s], p)));
+  T share = prescribed_share(ws, ne + ws.held.redundant[s], p);
   for (int a = 0; a < ws.held.n; ++a) {
     const T part = ws.held.tie[s * nc + a] * prescribed_share(ws, ne + ws.held.contact[a], p);
     share -= part, size = larger(size, abs(value(part)));
@@ -160,15 +162,15 @@ int split_held(Workspace<T>& ws, int n) {
   Held<T>& h = ws.held;
   for (int a = 0; a < n; ++a) {
     for (int i = 0; i < nv; ++i) h.rows[a * nv + i] = T(0);
-    ws.geometry.white.add(ne + h.all[a], T(1), h.rows + a * nv);
+    ws.geometry.mass_weighted.add(ne + h.all[a], T(1), h.rows + a * nv);
   }
   return orthonormal_split(n, nv, h.rows, h.basis, h.order, h.norms);
 }
 
-/// Of the n locked contacts in held.all the carriers: independent ones, whose held.number is not -1, and rigid ones.
-/// Then held.number is the place among them.
+/// Of the n locked contacts in held.all the independent ones, whose held.number is not -1, and
+/// rigid ones. Then held.number is the place among them.
 template <class T>
-void list_carriers(Workspace<T>& ws, int n) {
+void list_independent(Workspace<T>& ws, int n) {
   Held<T>& h = ws.held;
   h.n = 0;
   for (int a = 0; a < n; ++a) {
@@ -189,9 +191,9 @@ bool varies(const Workspace<T>& ws, int c) {
   return false;
 }
 
-/// As list_carriers beside transmissions, which come before all contacts: those whose directions vary are the last.
+/// As list_independent beside transmissions, which come before all contacts: those whose directions vary are the last.
 template <class T>
-void list_carriers_beside(Workspace<T>& ws, int n) {
+void list_independent_beside(Workspace<T>& ws, int n) {
   Held<T>& h = ws.held;
   h.n = 0;
   for (int varying = 0; varying < 2; ++varying) {
@@ -205,61 +207,61 @@ void list_carriers_beside(Workspace<T>& ws, int n) {
   }
 }
 
-/// The others are spares: the direction of each in terms of the carriers.
+/// The others are redundant: the direction of each in terms of the independent contacts.
 template <class T>
-void tie_spares(Workspace<T>& ws, int n, int rank) {
+void tie_redundant(Workspace<T>& ws, int n, int rank) {
   const int nc = int(ws.sys.contacts), ne = int(ws.sys.elements), nv = int(ws.sys.speeds);
   Held<T>& h = ws.held;
   for (int a = 0; a < n; ++a) {
     if (h.number[a] >= 0) continue;
-    T* tie = h.tie + h.n_spare * nc;
+    T* tie = h.tie + h.n_redundant * nc;
     for (int b = 0; b < nc; ++b) tie[b] = T(0);
     resolve_direction(rank, nv, h.rows, h.order, h.rows + a * nv, h.share);
     const double size = value(ws.geometry.own[ne + h.all[a]]);
     for (int j = 0; j < rank; ++j) {
       const T share = h.share[j];
-      const int carrier = h.all[h.order[j]];
-      const bool counts = value(share * share * ws.geometry.own[ne + carrier]) > 1e-18 * size;
+      const int c = h.all[h.order[j]];
+      const bool counts = value(share * share * ws.geometry.own[ne + c]) > 1e-18 * size;
       if (counts) tie[h.number[h.order[j]]] = share;
     }
-    h.spare[h.n_spare++] = h.all[a];
+    h.redundant[h.n_redundant++] = h.all[a];
   }
 }
 
-/// As tie_spares for many speeds: the direction of a spare is the sum of those of the carriers that it has most in
-/// common with, solved twice because the mobility squares what is small.
+/// As tie_redundant for many speeds: the direction of a redundant contact is the sum of those of the independent
+/// contacts that it has most in common with, solved twice because the mobility squares what is small.
 template <class T>
-void tie_far_spares(Workspace<T>& ws, int n) {
+void tie_far_redundant(Workspace<T>& ws, int n) {
   const int nc = int(ws.sys.contacts), ne = int(ws.sys.elements), nv = int(ws.sys.speeds);
-  const Compressed<T>& white = ws.geometry.white;
+  const Compressed<T>& mass_weighted = ws.geometry.mass_weighted;
   Held<T>& h = ws.held;
   for (int a = 0; a < n; ++a) {
     if (h.number[a] >= 0) continue;
-    if (h.n_spare >= ws.sys.spares) {
+    if (h.n_redundant >= ws.sys.spares) {
       h.too_many = true;
       return;
     }
-    T *tie = h.tie + h.n_spare * nc, *left = h.motion;
+    T *tie = h.tie + h.n_redundant * nc, *left = h.motion;
     for (int b = 0; b < nc; ++b) tie[b] = T(0);
     for (int i = 0; i < nv; ++i) left[i] = T(0);
-    white.add(ne + h.all[a], T(1), left);
+    mass_weighted.add(ne + h.all[a], T(1), left);
     for (int round = 0; round < 3; ++round) {
-      for (int b = 0; b < h.n; ++b) h.rhs[b] = white.times(ne + h.contact[b], left);
+      for (int b = 0; b < h.n; ++b) h.rhs[b] = mass_weighted.times(ne + h.contact[b], left);
       solve_locked(ws, h.rhs, h.solved);
-      for (int b = 0; b < h.n; ++b) tie[b] += h.solved[b], white.add(ne + h.contact[b], -h.solved[b], left);
+      for (int b = 0; b < h.n; ++b) tie[b] += h.solved[b], mass_weighted.add(ne + h.contact[b], -h.solved[b], left);
     }
     const double size = value(ws.geometry.own[ne + h.all[a]]);
     for (int b = 0; b < h.n; ++b) {
       if (!(value(tie[b] * tie[b] * ws.geometry.own[ne + h.contact[b]]) > 1e-18 * size)) tie[b] = T(0);
     }
-    h.spare[h.n_spare++] = h.all[a];
+    h.redundant[h.n_redundant++] = h.all[a];
   }
 }
 
 /// Spares whose slip the prescribed speeds move.
 template <class T>
 void list_driven(Workspace<T>& ws) {
-  for (int s = 0; s < ws.held.n_spare; ++s) {
+  for (int s = 0; s < ws.held.n_redundant; ++s) {
     // what transmissions hold moves when their ratios do
     bool driven = ws.ratios.n > 0;
     for (int p = 0; p < ws.sys.prescribed; ++p) driven = driven || driven_share(ws, s, p) != 0;
@@ -267,7 +269,8 @@ void list_driven(Workspace<T>& ws) {
   }
 }
 
-/// Sort the locked contacts into carriers and spares; all of them are carriers where no directions depend on others.
+/// Sort the locked contacts into independent and redundant ones; all of them are independent where no directions depend
+/// on others.
 template <class T>
 void list_locked(Workspace<T>& ws) {
   Held<T>& h = ws.held;
@@ -276,21 +279,21 @@ void list_locked(Workspace<T>& ws) {
     if (ws.contact.mode[c] == locked) h.in_set[n] = 0, h.all[n] = h.contact[n] = c, ++n;
   }
   h.n = h.n_fixed = n;
-  h.n_spare = h.n_sets = h.n_driven = 0;
+  h.n_redundant = h.n_sets = h.n_driven = 0;
   h.too_many = false;
   if (ws.ratios.n == 0 && (!ws.geometry.redundant || n < 2)) return;
   if (is_few(ws.sys)) {
     const int rank = split_held(ws, n);
     for (int a = 0; a < n; ++a) h.number[a] = -1;
     for (int j = 0; j < rank; ++j) h.number[h.order[j]] = 0;
-    ws.ratios.n > 0 ? list_carriers_beside(ws, n) : list_carriers(ws, n);
+    ws.ratios.n > 0 ? list_independent_beside(ws, n) : list_independent(ws, n);
     if (h.n == n) return;
-    tie_spares(ws, n, rank);
+    tie_redundant(ws, n, rank);
   } else {
     h.too_many = eliminate(ws, h.all, n) < 0;
-    list_carriers(ws, n);
+    list_independent(ws, n);
     if (h.n == n || !factor_mobility(ws)) return;
-    tie_far_spares(ws, n);
+    tie_far_redundant(ws, n);
   }
   list_driven(ws);
   join_sets(ws, h.order);
@@ -298,11 +301,11 @@ void list_locked(Workspace<T>& ws) {
   if (h.too_many) h.n_sets = h.n_driven = 0;
 }
 
-/// The directions of the spares in terms of the carriers at the ratios of the point that was evaluated last, and with
-/// them the loads by the torques of both: transmissions turn them as their ratios vary in a phase.
-/// docs/theory/varying-ratios.md (21)
+/// The directions of the redundant contacts in terms of the independent contacts at the ratios of the point that was
+/// evaluated last, and with them the loads by the torques of both: transmissions turn them as their ratios vary in a
+/// phase. docs/theory/varying-ratios.md (21)
 template <class T>
-[[gnu::noinline]] void turn_spares(Workspace<T>& ws) {
+[[gnu::noinline]] void turn_redundant(Workspace<T>& ws) {
   const int nc = int(ws.sys.contacts), ne = int(ws.sys.elements), nv = int(ws.sys.speeds);
   Ratios<T>& r = ws.ratios;
   Held<T>& h = ws.held;
@@ -314,14 +317,14 @@ template <class T>
     const BesideRatios<T> beside(ws, Written::last);
     auto lay = [&](int row, int c) {
       for (int i = 0; i < nv; ++i) h.rows[row * nv + i] = T(0);
-      ws.geometry.white.add(ne + c, T(1), h.rows + row * nv);
+      ws.geometry.mass_weighted.add(ne + c, T(1), h.rows + row * nv);
     };
     for (int a = 0; a < h.n; ++a) lay(a, h.contact[a]);
-    for (int s = 0; s < h.n_spare; ++s) lay(h.n + s, h.spare[s]);
-    const int rank = orthonormal_split(h.n + h.n_spare, nv, h.rows, h.basis, h.order, h.norms, h.n);
-    for (int s = 0; s < h.n_spare; ++s) {
+    for (int s = 0; s < h.n_redundant; ++s) lay(h.n + s, h.redundant[s]);
+    const int rank = orthonormal_split(h.n + h.n_redundant, nv, h.rows, h.basis, h.order, h.norms, h.n);
+    for (int s = 0; s < h.n_redundant; ++s) {
       resolve_direction(rank, nv, h.rows, h.order, h.rows + (h.n + s) * nv, h.share);
-      const double size = value(ws.geometry.own[ne + h.spare[s]]);
+      const double size = value(ws.geometry.own[ne + h.redundant[s]]);
       for (int b = 0; b < nc; ++b) h.tie[s * nc + b] = T(0);
       for (int j = 0; j < rank; ++j) {
         const T share = h.share[j];
@@ -333,13 +336,13 @@ template <class T>
   for (int a = 0; a < r.n; ++a) r.value[a] = r.sorted[a];
 }
 
-/// Set number k under the torques of the carriers, its bounds widened by round-off.
+/// Set number k under the torques of the independent contacts, its bounds widened by round-off.
 template <class T>
 DependentSet<T> dependent_set(Workspace<T>& ws, int k, const T* carried, T noise) {
   const int nc = int(ws.sys.contacts), first = ws.held.set_first[k], n = ws.held.set_first[k + 1] - first,
             rank = ws.held.set_rank[k];
   if constexpr (!has_lanes<T>) {
-    if (ws.ratios.n > 0 && !ws.ratios.inside && is_few(ws.sys)) turn_spares(ws);
+    if (ws.ratios.n > 0 && !ws.ratios.inside && is_few(ws.sys)) turn_redundant(ws);
   }
   const DependentSet<T> set{n, rank, ws.set.column, ws.set.load, ws.set.lower, ws.set.upper, ws.set.x};
   const int* place = ws.held.set_place + first;
@@ -367,7 +370,7 @@ LimitLoad<T> limit_of(Workspace<T>& ws, const DependentSet<T>& set) {
   return {set, ws.set.tableau, ws.set.limit_x, ws.set.price, ws.set.basis, ws.set.place};
 }
 
-/// The loads without the torques of set k, from those with the torques of the carriers.
+/// The loads without the torques of set k, from those with the torques of the independent contacts.
 template <class T>
 void outer_loads(Workspace<T>& ws, int k, const T* load, const T* carried) {
   const int first = ws.held.set_first[k], end = first + ws.held.set_rank[k];
@@ -380,7 +383,7 @@ void outer_loads(Workspace<T>& ws, int k, const T* load, const T* carried) {
 }
 
 /// What set k has left of its limit load, as a share of the load: below zero it cannot hold. `load`: with the torques
-/// of the carriers.
+/// of the independent contacts.
 template <class T>
 [[gnu::noinline]] T set_room(Workspace<T>& ws, int k, const T* carried, T noise, const T* load) {
   const DependentSet<T> set = dependent_set(ws, k, carried, noise);
@@ -400,7 +403,7 @@ T solve_at_limit(LoadedLimit<T>& limit) {
   return solve_loaded(limit);
 }
 
-/// Torques of all contacts of set k in place of those of its carriers: `give` takes contact and torque.
+/// Torques of all contacts of set k in place of those of its independent contacts: `give` takes contact and torque.
 template <class T, class Give>
 void share_load(Workspace<T>& ws, int k, const T* carried, Give&& give) {
   const DependentSet<T> set = dependent_set(ws, k, carried, T(0));
@@ -421,7 +424,7 @@ void share_load(Workspace<T>& ws, int k, const T* carried, Give&& give) {
   for (int i = 0; i < set.n; ++i) give(member[i], set.x[i]);
 }
 
-/// Torques of the locked contacts, carriers given, by contact: `give` takes contact and torque.
+/// Torques of the locked contacts, independent contacts given, by contact: `give` takes contact and torque.
 template <class T, class Give>
 CLUTCHWORK_HOT void locked_torques(Workspace<T>& ws, const T* carried, Give&& give) {
   for (int a = 0; a < ws.held.n; ++a) {
@@ -465,16 +468,16 @@ void share_decided(Workspace<T>& ws) {
   T* carried = ws.held.carried;
   for (int a = 0; a < ws.held.n; ++a) {
     carried[a] = ws.decision.torque[ws.held.contact[a]];
-    for (int s = 0; s < ws.held.n_spare; ++s)
-      carried[a] += ws.held.tie[s * nc + a] * ws.decision.torque[ws.held.spare[s]];
+    for (int s = 0; s < ws.held.n_redundant; ++s)
+      carried[a] += ws.held.tie[s * nc + a] * ws.decision.torque[ws.held.redundant[s]];
   }
-  // as if the carriers held all of it
+  // as if the independent contacts held all of it
   for (int l = 0; l < ws.sys.loads; ++l) {
     const T* by_torque = ws.loads.by_torque + l * ws.n_directions + ws.sys.elements;
     for (int a = 0; a < ws.held.n; ++a)
       ws.loads.now[l] += by_torque[ws.held.contact[a]] * (carried[a] - ws.decision.torque[ws.held.contact[a]]);
-    for (int s = 0; s < ws.held.n_spare; ++s)
-      ws.loads.now[l] -= by_torque[ws.held.spare[s]] * ws.decision.torque[ws.held.spare[s]];
+    for (int s = 0; s < ws.held.n_redundant; ++s)
+      ws.loads.now[l] -= by_torque[ws.held.redundant[s]] * ws.decision.torque[ws.held.redundant[s]];
   }
   for (int k = 0; k < ws.held.n_sets; ++k) share_load(ws, k, carried, [&](int c, T x) { ws.decision.torque[c] = x; });
 }

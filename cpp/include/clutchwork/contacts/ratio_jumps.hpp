@@ -42,7 +42,7 @@ void jump_ratio(Workspace<T>& ws, int a, T ratio) {
   Ratios<T>& r = ws.ratios;
   const int d = first_of(ws, a), nv = int(ws.sys.speeds);
   span_rows(ws, a), leave_directions(ws);
-  const T *x1 = r.white.val + d * nv, *x2 = x1 + nv;
+  const T *x1 = r.mass_weighted.val + d * nv, *x2 = x1 + nv;
   const T p11 = dot(nv, x1, x1), p12 = dot(nv, x1, x2), p22 = dot(nv, x2, x2);
   auto mobility = [&](T i) { return p11 - T(2) * i * p12 + i * i * p22; };
   const T r1 = rate_of(ws, d), r2 = rate_of(ws, d + 1), before = mobility(r.value[a]), after = mobility(ratio);

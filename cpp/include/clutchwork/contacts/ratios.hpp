@@ -221,9 +221,9 @@ void leave_directions(Workspace<T>& ws) {
   Ratios<T>& r = ws.ratios;
   const int nv = int(ws.sys.speeds), ne = int(ws.sys.elements), nc = int(ws.sys.contacts);
   for (int d = 0; d < ws.n_directions; ++d) {
-    T* x = r.white.val + d * nv;
-    r.white.first[d] = d * nv;
-    for (int i = 0; i < nv; ++i) x[i] = T(0), r.white.col[d * nv + i] = i;
+    T* x = r.mass_weighted.val + d * nv;
+    r.mass_weighted.first[d] = d * nv;
+    for (int i = 0; i < nv; ++i) x[i] = T(0), r.mass_weighted.col[d * nv + i] = i;
     add_direction(ws, d, T(1), x);
     take_off_followers(ws, x, r.via + d * r.n);
     forward_solve(nv, ws.geometry.inertia, ws.geometry.factor, x);
@@ -235,10 +235,11 @@ void leave_directions(Workspace<T>& ws) {
     for (int i = 0; i < nv; ++i) x[i] = T(0);
     r.own[d] = T(0);
   }
-  r.white.first[ws.n_directions] = ws.n_directions * nv;
+  r.mass_weighted.first[ws.n_directions] = ws.n_directions * nv;
   for (int c = 0; c < nc; ++c) {
     for (int b = 0; b <= c; ++b)
-      r.mobility[ws.geometry.near.sky[c] + b] = dot(nv, r.white.val + (ne + c) * nv, r.white.val + (ne + b) * nv);
+      r.mobility[ws.geometry.near.sky[c] + b] =
+          dot(nv, r.mass_weighted.val + (ne + c) * nv, r.mass_weighted.val + (ne + b) * nv);
   }
 }
 
@@ -278,7 +279,7 @@ void leave_loads(Workspace<T>& ws) {
     for (int i = 0; i < nv; ++i) x[i] = ws.loads.momentum[l * nv + i];
     follow_rows(ws, r.wanted, x);
     for (int d = 0; d < nd; ++d) {
-      T s = dot(nv, x, r.white.val + d * nv) - without(d);
+      T s = dot(nv, x, r.mass_weighted.val + d * nv) - without(d);
       for (int k = 0; k < r.rank; ++k) s -= r.part[d * r.n + k] * r.share[k];
       ws.loads.beside_torque[l * nd + d] = s;
     }
@@ -325,7 +326,7 @@ class BesideRatios {
   bool entered_;
 
   void swap() {
-    exchange(ws_.geometry.white, ws_.ratios.white);
+    exchange(ws_.geometry.mass_weighted, ws_.ratios.mass_weighted);
     exchange(ws_.geometry.own, ws_.ratios.own);
     exchange(ws_.geometry.mobility, ws_.ratios.mobility);
     exchange(ws_.loads.by_torque, ws_.loads.beside_torque);

@@ -90,13 +90,13 @@ void put_motion(Workspace<Lanes<R>>& ws, const Workspace<double>& run, int i) {
 
 /// One end of a step.
 template <int R>
-void put_edge(Edge<Lanes<R>>& to, const Edge<double>& from, int n_rates, int held, int i) {
+void put_end(StepEnd<Lanes<R>>& to, const StepEnd<double>& from, int n_rates, int held, int i) {
   put(to.rate, from.rate, n_rates, i), put(to.slope, from.slope, n_rates, i);
   put(to.multiplier, from.multiplier, held, i), put(to.drift, from.drift, held, i);
   put(to.capacity, from.capacity, held, i), put(to.swing, from.swing, held, i), put(to.noise, from.noise, held, i);
 }
 template <int R>
-void get_edge(Edge<double>& to, const Edge<Lanes<R>>& from, int n_rates, int held, int i) {
+void get_end(StepEnd<double>& to, const StepEnd<Lanes<R>>& from, int n_rates, int held, int i) {
   get(to.rate, from.rate, n_rates, i), get(to.slope, from.slope, n_rates, i);
   get(to.multiplier, from.multiplier, held, i), get(to.drift, from.drift, held, i);
   get(to.capacity, from.capacity, held, i), get(to.swing, from.swing, held, i), get(to.noise, from.noise, held, i);

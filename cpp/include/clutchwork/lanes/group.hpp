@@ -17,7 +17,7 @@ struct Member {
   alignas(64) unsigned char phase[sizeof(LanePhase)];
 
   LanePhase& own_phase() { return *std::launder(reinterpret_cast<LanePhase*>(phase)); }
-  Pace<double>& pace() { return own_phase(); }
+  StepSize<double>& pace() { return own_phase(); }
 };
 
 /// Up to eight runs of models with the same structure.

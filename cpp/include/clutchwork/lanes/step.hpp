@@ -22,7 +22,7 @@ CLUTCHWORK_INLINE Mask<R> doubtful_inline(const Workspace<Lanes<R>>& ws, const L
   clear = clear && !nears_rest(ws);
   // open contacts that have started to move get their direction
   for (int k = ws.n_branches; ws.guard.n_undirected > 0 && k < ws.n_rates; ++k) {
-    if (ws.branch[k].sign == 0) clear = clear && abs(ws.there.rate[k]) <= 1e-10;
+    if (ws.branch[k].sign == 0) clear = clear && abs(ws.step_end.rate[k]) <= 1e-10;
   }
   return !clear;
 }
@@ -64,9 +64,9 @@ struct LaneStep {
     });
   }
   /// Derivatives and guards at its end, at these times.
-  static void look(void* form, void* step, const void* times) {
+  static void linearize_at(void* form, void* step, const void* times) {
     visit_lanes<R>(form, step, [&](auto& f, auto& s) {
-      look_inline(f, s, *static_cast<const Lanes<R>*>(times), s.y1(), s.f1(), s.dt1(), f.ws.there);
+      linearize_end_inline(f, s, *static_cast<const Lanes<R>*>(times), s.y1(), s.f1(), s.dt1(), f.ws.step_end);
     });
   }
   /// Lanes in which something may happen inside it.
@@ -79,7 +79,7 @@ struct LaneStep {
 /// The same as pointers: which one is taken depends on the processor.
 struct LaneKernel {
   void (*advance)(void* form, void* step, void* error, void* finite);
-  void (*look)(void* form, void* step, const void* times);
+  void (*linearize_at)(void* form, void* step, const void* times);
   void (*doubt)(void* form, void* step, void* doubtful);
 };
 

@@ -2,8 +2,8 @@
 #include <clutchwork/lanes/exchange.hpp>
 #include <clutchwork/lanes/mode.hpp>
 #include <clutchwork/lanes/step.hpp>
-#include <clutchwork/run/pace.hpp>
 #include <clutchwork/run/phase.hpp>
+#include <clutchwork/run/step_size.hpp>
 
 /// The phases of up to eight runs in one mode, stepped together: docs/theory/lanes.md.
 namespace clutchwork {
@@ -52,8 +52,8 @@ class Together {
   }
 
  private:
-  static Pace<double>& pace_of(LanePhase* phase) { return *phase; }
-  Pace<double>& pace(int i) { return pace_of(phase_[i]); }
+  static StepSize<double>& pace_of(LanePhase* phase) { return *phase; }
+  StepSize<double>& pace(int i) { return pace_of(phase_[i]); }
   Workspace<double>& run_of(int i) { return pace(i).ws_; }
 
   static LaneForm<2> form_of(Workspace<Lanes<2>>& ws, const Workspace<double>& run) {
@@ -62,7 +62,7 @@ class Together {
 
   /// A lane without a phase computes what another one does.
   void enter(int i, int like) {
-    Pace<double>& one = pace(like);
+    StepSize<double>& one = pace(like);
     active_[i] = i == like;
     n_active_ += active_[i];
     ws_.run[i] = active_[i] ? &one.ws_ : nullptr;
@@ -72,21 +72,21 @@ class Together {
   }
 
   /// Where a phase stands, into its lane.
-  void load(Pace<double>& one, int i) {
+  void load(StepSize<double>& one, int i) {
     // rows and guards may have read the signals elsewhere
     inputs_at(one.ws_, one.ws_.time), input_slopes_at(one.ws_, one.ws_.time);
     put(step_.y0(), one.row(StepRow::y0), n_, i), put(step_.f0(), one.row(StepRow::f0), n_, i);
     put(step_.dt0(), one.row(StepRow::dt0), n_, i);
-    put_edge(ws_.here, one.ws_.here, ws_.n_rates, ws_.held.n, i);
+    put_end(ws_.step_start, one.ws_.step_start, ws_.n_rates, ws_.held.n, i);
     put_jacobian(ws_, one.ws_, i), put_inputs(ws_, one.ws_, i), put_lines(ws_, one.ws_, i);
   }
 
   /// Back to the phase: where the lane stands.
   void rest(int i) {
-    Pace<double>& one = pace(i);
+    StepSize<double>& one = pace(i);
     get(one.row(StepRow::y0), step_.y0(), n_, i), get(one.row(StepRow::f0), step_.f0(), n_, i);
     get(one.row(StepRow::dt0), step_.dt0(), n_, i);
-    get_edge(one.ws_.here, ws_.here, ws_.n_rates, ws_.held.n, i);
+    get_end(one.ws_.step_start, ws_.step_start, ws_.n_rates, ws_.held.n, i);
     get_jacobian(one.ws_, ws_, i);
     get(one.ws_.in.u, ws_.in.u, ws_.in.n_refs, i), get(one.ws_.in.du, ws_.in.du, ws_.in.n_refs, i);
     one.ws_.in.time = end_[i];
@@ -94,12 +94,12 @@ class Together {
 
   /// Back to the phase: a whole step.
   void unload(int i) {
-    Pace<double>& one = pace(i);
+    StepSize<double>& one = pace(i);
     rest(i);
     get(one.row(StepRow::y1), step_.y1(), n_, i), get(one.row(StepRow::f1), step_.f1(), n_, i);
     get(one.row(StepRow::dt1), step_.dt1(), n_, i);
     for (int s = 0; s < 8; ++s) get(one.row(s), step_.k(s), n_, i);
-    get_edge(one.ws_.there, ws_.there, ws_.n_rates, ws_.held.n, i);
+    get_end(one.ws_.step_end, ws_.step_end, ws_.n_rates, ws_.held.n, i);
   }
 
   void leave(int i) {
@@ -120,7 +120,7 @@ class Together {
     bool changed = false;
     for (int i = 0; i < n_lanes; ++i) {
       if (!active_[i]) continue;
-      Pace<double>& one = pace(i);
+      StepSize<double>& one = pace(i);
       if (one.is_due()) {
         rest(i);
         phase_[i]->settle_due();
@@ -158,12 +158,12 @@ class Together {
     }
     // lanes that do not count look again at where they are
     for (int j = 0; j < n_; ++j) step_.y1()[j] = select(counts, step_.y1()[j], step_.y0()[j]);
-    kernel_.look(&form_, &step_, &end_);
+    kernel_.linearize_at(&form_, &step_, &end_);
   }
 
   /// Whether the step of a lane counts.
   bool judge(int i, double error) {
-    Pace<double>& one = pace(i);
+    StepSize<double>& one = pace(i);
     one.error_ = error;
     if (error <= 1) {
       ++one.ws_.statistics.steps;
@@ -183,7 +183,7 @@ class Together {
     kernel_.doubt(&form_, &step_, &doubtful);
     for (int i = 0; i < n_lanes; ++i) {
       if (!active_[i] || !counts_[i]) continue;
-      Pace<double>& one = pace(i);
+      StepSize<double>& one = pace(i);
       if (doubtful[i] || one.ws_.options.work || one.ws_.options.angles || one.has_rows(1)) {
         unload(i);
         phase_[i]->settle_given();
@@ -202,9 +202,9 @@ class Together {
       step_.f0()[j] = step_.f1()[j];
       step_.dt0()[j] = step_.dt1()[j];
     }
-    const Edge<Lanes<2>> edge = ws_.here;
-    ws_.here = ws_.there;
-    ws_.there = edge;
+    const StepEnd<Lanes<2>> edge = ws_.step_start;
+    ws_.step_start = ws_.step_end;
+    ws_.step_end = edge;
     bool changed = false;
     for (int i = 0; i < n_lanes; ++i) {
       if (!visited_[i]) continue;

@@ -72,10 +72,10 @@ struct Workspace<Lanes<R>> {
   } reduced;
   Jacobian<Lanes<R>> jacobian;
   Stages<Lanes<R>> stages;
-  Edge<Lanes<R>> here{}, there{};
+  StepEnd<Lanes<R>> step_start{}, step_end{};
   struct {
     Lanes<R>*torque = nullptr, *drift = nullptr;
-  } seen;
+  } observed;
   struct {
     LaneLine<R>* line = nullptr;
     int n_lines = 0, n_undirected = 0;
@@ -92,12 +92,12 @@ struct Workspace<Lanes<R>> {
     a.take(p.reduced.offset, n.directions * n.prescribed), a.take(p.reduced.gross, n.directions * n.speeds);
     a.take(p.reduced.span, n.states), a.take(p.reduced.floor, n.states);
     a.take(p.reduced.size, n.speeds), a.take(p.reduced.missed, n.speeds);
-    a.take(p.seen.torque, n.directions), a.take(p.seen.drift, n.directions);
+    a.take(p.observed.torque, n.directions), a.take(p.observed.drift, n.directions);
     a.take(p.guard.line, 3 * n.directions + n.contacts);
     a.take(p.contact.fault, n.contacts), a.take(p.contact.compliant, n.contacts);
     a.take(p.contact.bends, n.contacts), a.take(p.held.contact, n.contacts);
     auto each = [&](auto&... part) { (std::remove_reference_t<decltype(part)>::lay_out(part, a, n), ...); };
-    each(p.in, p.jacobian, p.stages, p.here, p.there);
+    each(p.in, p.jacobian, p.stages, p.step_start, p.step_end);
   }
 };
 

@@ -6,7 +6,7 @@
 #include <clutchwork/contacts/locked.hpp>
 #include <clutchwork/contacts/sticking.hpp>
 #include <clutchwork/motion/full.hpp>
-#include <clutchwork/motion/loads.hpp>
+#include <clutchwork/motion/mesh_loads.hpp>
 #include <clutchwork/motion/reduce.hpp>
 #include <clutchwork/motion/shared.hpp>
 #include <clutchwork/workspace.hpp>
@@ -43,11 +43,11 @@ template <class Form, class T = typename Form::Scalar>
   evaluate_inline(form, t, y, d);
 }
 
-/// As evaluate, keeping rates and torques of the branches in ws.seen, for output and guards.
+/// As evaluate, keeping rates and torques of the branches in ws.observed, for output and guards.
 template <class Form, class T = typename Form::Scalar>
 void observe(Form& form, double t, const T* y, T* d) {
   Workspace<T>& ws = form.ws;
-  T *rate = ws.seen.rate, *torque = ws.seen.torque;
+  T *rate = ws.observed.rate, *torque = ws.observed.torque;
   if constexpr (Form::full) return evaluate_whole(form, t, y, d, rate, torque);
   const int nz = form.nz(), n = form.n();
   inputs_with(ws, t, y + nz);
@@ -61,7 +61,7 @@ void observe(Form& form, double t, const T* y, T* d) {
 
 /// evaluate plus all partial derivatives; dt := derivative of d by time.
 template <class Form, class T = typename Form::Scalar>
-CLUTCHWORK_HOT void linearize(Form& form, Real<T> t, const T* y, T* d, T* dt, Edge<T>& edge) {
+CLUTCHWORK_HOT void linearize(Form& form, Real<T> t, const T* y, T* d, T* dt, StepEnd<T>& edge) {
   Workspace<T>& ws = form.ws;
   if constexpr (Form::full) return linearize_whole(form, t, y, d, dt, edge);
   const int nz = form.nz(), n = form.n();
@@ -89,7 +89,7 @@ CLUTCHWORK_HOT void linearize(Form& form, Real<T> t, const T* y, T* d, T* dt, Ed
 
 /// Slopes of the rates along the motion: edge.slope, from dz/dt.
 template <class Form, class T = typename Form::Scalar>
-CLUTCHWORK_HOT void slopes(Form& form, const T* velocity, Edge<T>& edge) {
+CLUTCHWORK_HOT void slopes(Form& form, const T* velocity, StepEnd<T>& edge) {
   Workspace<T>& ws = form.ws;
   for (int k = 0; k < ws.n_rates; ++k) edge.slope[k] = form.rate(k, velocity) + offset_slope(ws, k);
 }
@@ -110,14 +110,14 @@ void sparse_multipliers(const Workspace<T>& ws, const T* torque, int np, T* out)
   T *q = ws.held.motion, *b = ws.held.rhs;
   for (int i = 0; i < nv; ++i) q[i] = T(0);
   for (int k = 0; k < ws.n_branches; ++k) {
-    ws.geometry.white.add(ws.branch[k].direction, torque[k], q);
+    ws.geometry.mass_weighted.add(ws.branch[k].direction, torque[k], q);
   }
   // those of varying directions are known
-  for (int a = m; a < ws.held.n; ++a) ws.geometry.white.add(ne + ws.held.contact[a], out[a], q);
+  for (int a = m; a < ws.held.n; ++a) ws.geometry.mass_weighted.add(ne + ws.held.contact[a], out[a], q);
   for (int p = 0; p < np; ++p) axpy(nv, -ws.in.prescribed_slope[p], ws.geometry.prescribed_momentum + p * nv, q);
   for (int a = 0; a < m; ++a) {
     const int d = ne + ws.held.contact[a];
-    b[a] = T(0) - ws.geometry.white.times(d, q);
+    b[a] = T(0) - ws.geometry.mass_weighted.times(d, q);
     // between prescribed speeds no torque holds
     for (int p = 0; p < np && !is_rigid(ws, ws.held.contact[a]); ++p)
       b[a] -= prescribed_share(ws, d, p) * ws.in.prescribed_slope[p];
@@ -153,9 +153,9 @@ T capacity_swing(const Workspace<T>& ws, int c, T capacity) {
 /// Torques of the branches and their drift at the point that was linearized last, at y, where the speeds change with
 /// `velocity`.
 template <class Form, class T = typename Form::Scalar>
-CLUTCHWORK_HOT void drift_torques(Form& form, const T* y, const T* velocity, const T* d, const Edge<T>& edge) {
+CLUTCHWORK_HOT void drift_torques(Form& form, const T* y, const T* velocity, const T* d, const StepEnd<T>& edge) {
   Workspace<T>& ws = form.ws;
-  T *drift = ws.seen.drift, *torque = ws.seen.torque;
+  T *drift = ws.observed.drift, *torque = ws.observed.torque;
   const T* states = d + form.nz();
   if constexpr (Form::full) return drift_whole(form, y, velocity, states, torque, drift);
   for (int k = 0; k < ws.n_branches; ++k) {
@@ -173,10 +173,10 @@ CLUTCHWORK_HOT void drift_torques(Form& form, const T* y, const T* velocity, con
 
 /// Loads, how fast they change, and how far from their ends the lines are with which contacts slip that follow them.
 template <class T>
-[[gnu::noinline]] void sense_loads(Workspace<T>& ws, Edge<T>& edge) {
+[[gnu::noinline]] void sense_loads(Workspace<T>& ws, StepEnd<T>& edge) {
   const Dual<T, 1>* held = ws.ratios.drift.held;
-  loads_of(ws, ws.seen.torque, true, ws.loads.now, [&](int c) { return held[c].v; });
-  loads_of(ws, ws.seen.drift, false, ws.loads.drift, [&](int c) { return held[c].d[0]; });
+  loads_of(ws, ws.observed.torque, true, ws.loads.now, [&](int c) { return held[c].v; });
+  loads_of(ws, ws.observed.drift, false, ws.loads.drift, [&](int c) { return held[c].d[0]; });
   for (int l = 0; l < ws.sys.loads; ++l) edge.load[l] = ws.loads.now[l], edge.load_drift[l] = ws.loads.drift[l];
   for (int i = 0; i < ws.loads.n_sliding; ++i) {
     const int l = ws.loads.sliding[i];
@@ -196,7 +196,7 @@ T load_swing(const Workspace<T>& ws, int c, T torque) {
 
 /// Multipliers of the locked contacts, their drift and their capacities there.
 template <class Form, class T = typename Form::Scalar>
-CLUTCHWORK_HOT void sense(Form& form, const T* y, const T* velocity, const T* d, Edge<T>& edge) {
+CLUTCHWORK_HOT void sense(Form& form, const T* y, const T* velocity, const T* d, StepEnd<T>& edge) {
   Workspace<T>& ws = form.ws;
   const int m = ws.held.n;
   if constexpr (Form::full) {
@@ -208,13 +208,13 @@ CLUTCHWORK_HOT void sense(Form& form, const T* y, const T* velocity, const T* d,
   drift_torques(form, y, velocity, d, edge);
   if constexpr (Form::full) sense_loads(ws, edge);
   T size = T(0);
-  for (int k = 0; k < ws.n_branches; ++k) size += abs(ws.seen.torque[k]);
+  for (int k = 0; k < ws.n_branches; ++k) size += abs(ws.observed.torque[k]);
   if constexpr (Form::full) {
     varying_multipliers(ws, ws.ratios.drift, edge.multiplier, [](const auto& x) { return x.v; });
     varying_multipliers(ws, ws.ratios.drift, edge.drift, [](const auto& x) { return x.d[0]; });
   }
-  multipliers(ws, ws.seen.torque, true, edge.multiplier);
-  multipliers(ws, ws.seen.drift, false, edge.drift);
+  multipliers(ws, ws.observed.torque, true, edge.multiplier);
+  multipliers(ws, ws.observed.drift, false, edge.drift);
   for (int a = 0; a < m; ++a) {
     edge.noise[a] = T(1e-12) * size;
     edge.capacity[a] = capacity_at(ws, ws.held.contact[a], edge.multiplier[a]);
@@ -232,9 +232,9 @@ CLUTCHWORK_HOT void sense(Form& form, const T* y, const T* velocity, const T* d,
   }
 }
 
-/// Room of the dependent sets were the torques of their carriers to drift on for a time.
+/// Room of the dependent sets were the torques of their independent contacts to drift on for a time.
 template <class T>
-double room_ahead(Workspace<T>& ws, int k, const Edge<T>& edge, double time) {
+double room_ahead(Workspace<T>& ws, int k, const StepEnd<T>& edge, double time) {
   T* carried = ws.held.carried;
   for (int a = 0; a < ws.held.n; ++a) carried[a] = edge.multiplier[a] + T(time) * edge.drift[a];
   for (int l = 0; l < ws.sys.loads; ++l) ws.loads.drift[l] = edge.load[l] + T(time) * edge.load_drift[l];

@@ -131,7 +131,7 @@ void rate_slopes(Workspace<T>& ws, F&& slope) {
 
 /// Time derivatives of the inputs that are no signals: of rates from their slopes, of shared states from their rates.
 template <class T>
-void full_drifts(FullForm<T>& form, const T* d, const Edge<T>& edge) {
+void full_drifts(FullForm<T>& form, const T* d, const StepEnd<T>& edge) {
   Workspace<T>& ws = form.ws;
   rate_slopes(ws, [&](int k) { return edge.slope[k]; });
   for (int i = 0; i < ws.in.n_shared_refs; ++i) {
@@ -297,7 +297,7 @@ void evaluate_whole(FullForm<T>& form, Real<T> t, const T* y, T* d, T* rate, T* 
   e.d = d, e.input = ws.in.u, e.rate = rate, e.torque = torque;
   for (int i = 0; i < form.n(); ++i) e.y[i] = y[i];
   whole_motion(form, e);
-  varying_multipliers(ws, ws.ratios.plain, ws.seen.carried, [](const T& x) { return x; });
+  varying_multipliers(ws, ws.ratios.plain, ws.observed.carried, [](const T& x) { return x; });
 }
 
 /// Signals as dual numbers, column `time` of which is time; beyond the last one: none is.
@@ -312,7 +312,7 @@ void lift_inputs(const Workspace<T>& ws, int time, const Whole<Dual<T, N>>& e) {
 
 /// d and its Jacobian at (t, y); dt := derivative by time.
 template <class T>
-void linearize_whole(FullForm<T>& form, Real<T> t, const T* y, T* d, T* dt, Edge<T>& edge) {
+void linearize_whole(FullForm<T>& form, Real<T> t, const T* y, T* d, T* dt, StepEnd<T>& edge) {
   constexpr int N = Full<T>::chunk;
   Workspace<T>& ws = form.ws;
   const int n = form.n();

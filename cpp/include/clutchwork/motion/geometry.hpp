@@ -36,14 +36,14 @@ bool weigh_directions(Workspace<T>& ws, const Sizes& room) {
   const int nv = int(sys.speeds);
   const Envelope& e = ws.geometry.inertia;
   const T* factor = ws.geometry.factor;
-  Compressed<T>& white = ws.geometry.white;
+  Compressed<T>& mass_weighted = ws.geometry.mass_weighted;
   T* x = ws.geometry.column;
   // behind a speed nothing refers to those before `rest`
   int *rest = ws.geometry.rest, at = 0;
   for (int i = nv - 1; i >= 0; --i) rest[i] = i + 1 < nv ? smaller(e.low[i], rest[i + 1]) : e.low[i];
   for (int i = 0; i < nv; ++i) x[i] = T(0);
   for (int d = 0; d < ws.n_directions; ++d) {
-    white.first[d] = at;
+    mass_weighted.first[d] = at;
     T square = T(0);
     const auto row = rate_row(sys, d);
     for (int k = 0; k < row.n; ++k) x[row.column[k]] = T(row.value[k]);
@@ -57,25 +57,25 @@ bool weigh_directions(Workspace<T>& ws, const Sizes& room) {
         x[i] = T(0);
         continue;
       }
-      if (at >= room.white) return false;
-      last = i, white.col[at] = i, white.val[at++] = x[i];
+      if (at >= room.mass_weighted) return false;
+      last = i, mass_weighted.col[at] = i, mass_weighted.val[at++] = x[i];
       square += x[i] * x[i];
     }
-    for (int k = white.first[d]; k < at; ++k) x[white.col[k]] = T(0);
+    for (int k = mass_weighted.first[d]; k < at; ++k) x[mass_weighted.col[k]] = T(0);
     ws.geometry.own[d] = square;
   }
-  white.first[ws.n_directions] = at;
+  mass_weighted.first[ws.n_directions] = at;
   return true;
 }
 
 /// Product of two mass-weighted directions.
 template <class T>
-T product(const Compressed<T>& white, int a, int b) {
+T product(const Compressed<T>& mass_weighted, int a, int b) {
   T s = T(0);
-  int e = white.first[a], f = white.first[b];
-  while (e < white.first[a + 1] && f < white.first[b + 1]) {
-    if (white.col[e] == white.col[f]) s += white.val[e] * white.val[f];
-    const int left = white.col[e], right = white.col[f];
+  int e = mass_weighted.first[a], f = mass_weighted.first[b];
+  while (e < mass_weighted.first[a + 1] && f < mass_weighted.first[b + 1]) {
+    if (mass_weighted.col[e] == mass_weighted.col[f]) s += mass_weighted.val[e] * mass_weighted.val[f];
+    const int left = mass_weighted.col[e], right = mass_weighted.col[f];
     e += left <= right, f += right <= left;
   }
   return s;
@@ -85,12 +85,12 @@ T product(const Compressed<T>& white, int a, int b) {
 template <class T>
 void order_contacts(Workspace<T>& ws, bool few) {
   const int nv = int(ws.sys.speeds), ne = int(ws.sys.elements), nc = int(ws.sys.contacts);
-  const Compressed<T>& white = ws.geometry.white;
+  const Compressed<T>& mass_weighted = ws.geometry.mass_weighted;
   int *place = ws.geometry.place, *at = ws.geometry.at, *start = ws.geometry.rest;
   // those without inertia come first
   auto bucket = [&](int c) {
-    const int end = white.first[ne + c + 1];
-    return white.first[ne + c] < end ? white.col[end - 1] + 1 : 0;
+    const int end = mass_weighted.first[ne + c + 1];
+    return mass_weighted.first[ne + c] < end ? mass_weighted.col[end - 1] + 1 : 0;
   };
   for (int i = 0; i <= nv + 1; ++i) start[i] = 0;
   for (int c = 0; c < nc; ++c) ++start[bucket(c) + 1];
@@ -107,9 +107,9 @@ bool weigh_contacts(Workspace<T>& ws, const Sizes& room) {
   const int ne = int(ws.sys.elements), nc = int(ws.sys.contacts);
   Geometry<T>& g = ws.geometry;
   order_contacts(ws, room.few);
-  auto first = [&](int p) { return g.white.col[g.white.first[ne + g.at[p]]]; };
-  auto last = [&](int p) { return g.white.col[g.white.first[ne + g.at[p] + 1] - 1]; };
-  auto empty = [&](int p) { return g.white.first[ne + g.at[p]] == g.white.first[ne + g.at[p] + 1]; };
+  auto first = [&](int p) { return g.mass_weighted.col[g.mass_weighted.first[ne + g.at[p]]]; };
+  auto last = [&](int p) { return g.mass_weighted.col[g.mass_weighted.first[ne + g.at[p] + 1] - 1]; };
+  auto empty = [&](int p) { return g.mass_weighted.first[ne + g.at[p]] == g.mass_weighted.first[ne + g.at[p] + 1]; };
   for (int p = 0, low = 0; p < nc; ++p) {
     // the last speeds ascend, so that what overlaps is a stretch of places
     g.near.low[p] = p;
@@ -122,7 +122,7 @@ bool weigh_contacts(Workspace<T>& ws, const Sizes& room) {
   for (int p = 0; p < nc; ++p) g.last[p] = p;
   for (int p = 0; p < nc; ++p) {
     for (int q = g.near.low[p]; q <= p; ++q) {
-      g.mobility[g.near.sky[p] + q] = product(g.white, ne + g.at[p], ne + g.at[q]);
+      g.mobility[g.near.sky[p] + q] = product(g.mass_weighted, ne + g.at[p], ne + g.at[q]);
       g.last[q] = p;
     }
   }

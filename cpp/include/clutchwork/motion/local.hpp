@@ -52,7 +52,7 @@ class LocalDerivatives {
     for (std::int64_t i = 0; i < n_.rows * n_.columns; ++i) out_[i] = 0;
     inputs_with(ws_, ws_.time, ws_.state);
     present_rates(ws_);
-    T *rate = ws_.seen.rate, *torque = ws_.seen.torque, *d = ws_.seen.state_rates;
+    T *rate = ws_.observed.rate, *torque = ws_.observed.torque, *d = ws_.observed.state_rates;
     for (int i = 0; i < sys_.states; ++i) d[i] = T(0);
     for (int k = 0; k < ws_.n_branches; ++k) {
       rate[k] = rate_of(ws_, ws_.branch[k].direction);
@@ -135,7 +135,7 @@ class LocalDerivatives {
   /// row += factor * derivatives of the heat of branch k [W], and its value where that is wanted.
   void add_heat(double* row, T factor, int k, bool valued) {
     const Branch<T>& b = ws_.branch[k];
-    const T *rate = ws_.seen.rate + k, *torque = ws_.seen.torque + k;
+    const T *rate = ws_.observed.rate + k, *torque = ws_.observed.torque + k;
     const double before = value_in(row);
     const bool own =
         b.law < 0 && visit_torque(
@@ -167,7 +167,7 @@ class LocalDerivatives {
     const int k = ws_.branch_of[first_of(ws_, a)];
     const Branch<T>& b = ws_.branch[k];
     Point at;
-    place(at, b, ws_.seen.rate + k);
+    place(at, b, ws_.observed.rate + k);
     visit_transmission(ws_, a, [&](auto tag, const auto& p) {
       using E = typename decltype(tag)::type;
       D own[E::states > 0 ? E::states : 1], input[E::inputs > 0 ? E::inputs : 1];
@@ -188,7 +188,7 @@ class LocalDerivatives {
   void fill_branch(int k) {
     const Branch<T>& b = ws_.branch[k];
     Point at;
-    place(at, b, ws_.seen.rate + k);
+    place(at, b, ws_.observed.rate + k);
     S f[most_ways];
     if (b.law < 0) {
       element_torques(ws_, b, at.rate, at.own, at.input, at.own_rates, f);

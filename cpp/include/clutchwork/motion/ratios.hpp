@@ -485,8 +485,8 @@ int vanished_row(const Ratios<T>& r) {
   return -1;
 }
 
-/// Locked contacts that share a load pass it on otherwise than the carriers would alone: transmissions take the
-/// difference, at the point that was evaluated last. docs/theory/varying-ratios.md (21)
+/// Locked contacts that share a load pass it on otherwise than the independent contacts would alone: transmissions take
+/// the difference, at the point that was evaluated last. docs/theory/varying-ratios.md (21)
 template <class Form, class T = typename Form::Scalar>
 [[gnu::noinline]] void carry_shares(Form& form) {
   Workspace<T>& ws = form.ws;
@@ -500,8 +500,8 @@ template <class Form, class T = typename Form::Scalar>
     for (int i = first; i < ws.held.set_first[k + 1]; ++i) {
       const int d = ne + ws.held.set_member[i], own = ws.branch_of[d];
       T more = ws.out.torque[d];
-      if (own >= 0 && own < ws.n_branches) more -= ws.seen.torque[own];
-      if (i - first < ws.held.set_rank[k]) more -= ws.seen.carried[ws.held.set_place[i]];
+      if (own >= 0 && own < ws.n_branches) more -= ws.observed.torque[own];
+      if (i - first < ws.held.set_rank[k]) more -= ws.observed.carried[ws.held.set_place[i]];
       add_direction(ws, d, more, torque);
     }
   }
@@ -511,8 +511,8 @@ template <class Form, class T = typename Form::Scalar>
   carry(r, w, reduced, nz);
   for (int a = 0; a < r.n; ++a) {
     const int d = first_of(ws, a), k = r.place[2 * a];
-    ws.seen.torque[k] += w.torque[a], ws.seen.torque[k + 1] -= w.ratio[a] * w.torque[a];
-    ws.out.torque[d] = ws.seen.torque[k], ws.out.torque[d + 1] = ws.seen.torque[k + 1];
+    ws.observed.torque[k] += w.torque[a], ws.observed.torque[k + 1] -= w.ratio[a] * w.torque[a];
+    ws.out.torque[d] = ws.observed.torque[k], ws.out.torque[d + 1] = ws.observed.torque[k + 1];
   }
 }
 

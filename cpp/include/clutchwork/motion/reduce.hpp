@@ -10,8 +10,8 @@
 /// The reduced motion of one mode: v = Z z + Y u with the locked slips gone. docs/theory/multipliers.md.
 namespace clutchwork {
 
-/// Orthonormal directions in held.basis whose first ones, as many as returned, span the carriers; the others the motion
-/// that is left.
+/// Orthonormal directions in held.basis whose first ones, as many as returned, span the independent contacts; the
+/// others the motion that is left.
 template <class T>
 int split_locked(Workspace<T>& ws) {
   for (int a = 0; a < ws.held.n_fixed; ++a) ws.held.all[a] = ws.held.contact[a];
@@ -22,11 +22,11 @@ int split_locked(Workspace<T>& ws) {
 template <class T>
 void map_multipliers(Workspace<T>& ws) {
   const int m = ws.held.n_fixed, ne = int(ws.sys.elements), np = int(ws.sys.prescribed), nv = int(ws.sys.speeds);
-  const Compressed<T>& white = ws.geometry.white;
+  const Compressed<T>& mass_weighted = ws.geometry.mass_weighted;
   T *b = ws.held.rhs, *x = ws.held.solved;
   for (int k = 0; k < ws.n_branches; ++k) {
     for (int a = 0; a < m; ++a) {
-      b[a] = -product(white, ne + ws.held.contact[a], ws.branch[k].direction);
+      b[a] = -product(mass_weighted, ne + ws.held.contact[a], ws.branch[k].direction);
     }
     solve_locked(ws, b, x);
     for (int a = 0; a < m; ++a) ws.held.reach[a * ws.n_branches + k] = x[a];
@@ -37,14 +37,14 @@ void map_multipliers(Workspace<T>& ws) {
       // between prescribed speeds no torque holds
       b[a] = is_rigid(ws, ws.held.contact[a])
                  ? T(0)
-                 : white.times(d, ws.geometry.prescribed_momentum + p * nv) - prescribed_share(ws, d, p);
+                 : mass_weighted.times(d, ws.geometry.prescribed_momentum + p * nv) - prescribed_share(ws, d, p);
     }
     solve_locked(ws, b, x);
     for (int a = 0; a < m; ++a) ws.held.reach_prescribed[a * np + p] = x[a];
   }
 }
 
-/// The part of a momentum that the carriers leave free, turned round: by the basis of a split.
+/// The part of a momentum that the independent contacts leave free, turned round: by the basis of a split.
 template <class T>
 void free_part(const Workspace<T>& ws, const T* momentum, T* x) {
   const T* basis = ws.held.basis;
@@ -57,18 +57,18 @@ void free_part(const Workspace<T>& ws, const T* momentum, T* x) {
   }
 }
 
-/// The same for many speeds, without a basis: less what the carriers take.
+/// The same for many speeds, without a basis: less what the independent contacts take.
 template <class T>
 void far_free_part(Workspace<T>& ws, const T* momentum, T* x) {
   const int nv = int(ws.sys.speeds), ne = int(ws.sys.elements), m = ws.held.n_fixed;
-  const Compressed<T>& white = ws.geometry.white;
+  const Compressed<T>& mass_weighted = ws.geometry.mass_weighted;
   T *share = ws.held.rhs, *size = ws.held.solved;
   for (int i = 0; i < nv; ++i) x[i] = -momentum[i];
   // what round-off leaves is taken too
   for (int round = 0; round < 2; ++round) {
-    for (int a = 0; a < m; ++a) share[a] = white.times(ne + ws.held.contact[a], x);
+    for (int a = 0; a < m; ++a) share[a] = mass_weighted.times(ne + ws.held.contact[a], x);
     solve_locked(ws, share, size);
-    for (int a = 0; a < m; ++a) white.add(ne + ws.held.contact[a], -size[a], x);
+    for (int a = 0; a < m; ++a) mass_weighted.add(ne + ws.held.contact[a], -size[a], x);
   }
 }
 
@@ -84,7 +84,7 @@ void map_prescribed(Workspace<T>& ws) {
     T *share = ws.held.rhs, *size = ws.held.solved;
     for (int a = 0; a < m; ++a) share[a] = prescribed_share(ws, ne + ws.held.contact[a], p);
     solve_locked(ws, share, size);
-    for (int a = 0; a < m; ++a) ws.geometry.white.add(ne + ws.held.contact[a], -size[a], x);
+    for (int a = 0; a < m; ++a) ws.geometry.mass_weighted.add(ne + ws.held.contact[a], -size[a], x);
     backward_solve(nv, ws.geometry.inertia, ws.geometry.factor, x);
     for (int i = 0; i < nv; ++i) ws.reduced.y_basis[i * np + p] = x[i];
   }

@@ -270,7 +270,7 @@ template <class T>
   const auto& sys = ws.sys;
   const int nx = int(sys.shared), ns = int(sys.states), nd = ws.n_directions;
   torques_by_shared(ws, rate, state);
-  T* torque = ws.seen.torque;
+  T* torque = ws.observed.torque;
   for (int k = 0; k < ws.n_branches; ++k) torque[k] = ws.jacobian.partial[k].torque;
   shared_rates(ws, rate, torque, state, d);
   linearize_heats(ws, rate, state);

@@ -11,8 +11,8 @@
 #include <clutchwork/motion/geometry.hpp>
 #include <clutchwork/motion/reduce.hpp>
 #include <clutchwork/motion/shared.hpp>
+#include <clutchwork/run/clamp_loads.hpp>
 #include <clutchwork/run/enter.hpp>
-#include <clutchwork/run/loads.hpp>
 #include <clutchwork/run/methods.hpp>
 #include <clutchwork/run/output.hpp>
 #include <clutchwork/run/phase.hpp>
@@ -75,7 +75,7 @@ void start_contacts(Workspace<T>& ws) {
     ws.contact.side[c] = ws.contact.struck[c] = 0;
     ws.contact.met_at[c] = -infinity;
     if (is_stop(ws, c)) ws.contact.mode[c] = open;
-    ws.happened.mode[c] = ws.contact.mode[c];
+    ws.event_context.mode[c] = ws.contact.mode[c];
   }
 }
 
@@ -188,8 +188,8 @@ bool start(Workspace<T>& ws) {
   list_processes(ws);
   find_process_pieces(ws);
   refresh_loads(ws);
-  ws.happened.cause = Cause::initial;
-  ws.happened.contact = -1;
+  ws.event_context.cause = Cause::initial;
+  ws.event_context.contact = -1;
   if constexpr (has_tangents<T>) ws.moved.here_time = ws.time, floor_sizes(ws);
   ws.started = true;
   return true;
@@ -200,13 +200,13 @@ template <class T>
 void note_torques(Workspace<T>& ws) {
   for (int c = 0; c < ws.sys.contacts; ++c) {
     const int k = ws.branch_of[ws.sys.elements + c];
-    ws.happened.mode[c] = ws.contact.mode[c];
-    ws.happened.torque[c] = ws.happened.slope[c] = T(0);
+    ws.event_context.mode[c] = ws.contact.mode[c];
+    ws.event_context.torque[c] = ws.event_context.slope[c] = T(0);
     if (k < 0 || k >= ws.n_branches) continue;
     const Branch<T>& b = ws.branch[k];
-    ws.happened.torque[c] = contact_torque(ws, b, rate_of(ws, b.direction), ws.state, ws.seen.state_rates);
+    ws.event_context.torque[c] = contact_torque(ws, b, rate_of(ws, b.direction), ws.state, ws.observed.state_rates);
   }
-  locked_torques(ws, ws.here.multiplier, [&](int c, T x) { ws.happened.torque[c] += x; });
+  locked_torques(ws, ws.step_start.multiplier, [&](int c, T x) { ws.event_context.torque[c] += x; });
 }
 
 /// Parameters were set from outside: decide the modes anew.
@@ -221,8 +221,8 @@ Status take_outside(Workspace<T>& ws) {
   find_process_pieces(ws);
   find_pieces(ws);
   refresh_loads(ws);
-  ws.happened.cause = Cause::input;
-  ws.happened.contact = -1;
+  ws.event_context.cause = Cause::input;
+  ws.event_context.contact = -1;
   return switch_modes(ws);
 }
 

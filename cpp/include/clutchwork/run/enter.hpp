@@ -34,7 +34,7 @@ bool has_massless(const Workspace<T>& ws) {
 template <class T>
 bool bends_near_zero(const Workspace<T>& ws, const Branch<T>& b, const StatePartials<T>& out) {
   const T slip = T(1e-6 * b.sign);
-  return value(branch_partial(ws, b, slip, T(0), ws.state, ws.seen.state_rates, out).by_rate) != 0;
+  return value(branch_partial(ws, b, slip, T(0), ws.state, ws.observed.state_rates, out).by_rate) != 0;
 }
 
 /// Whether the present phase changes by itself so slowly that steps follow what acts on it. Where it swings within
@@ -51,7 +51,7 @@ bool is_soft(Workspace<T>& ws) {
     // pair
     if (b.law >= 0 && b.states == 0 && bends_near_zero(ws, b, state_partials(ws, k))) return false;
     ws.jacobian.partial[k] =
-        branch_partial(ws, b, rate_of(ws, b.direction), T(0), ws.state, ws.seen.state_rates, state_partials(ws, k));
+        branch_partial(ws, b, rate_of(ws, b.direction), T(0), ws.state, ws.observed.state_rates, state_partials(ws, k));
   }
   return fastest_rate(ws) * (ws.last_step > 0 ? ws.last_step : 1e-3) < slow;
 }

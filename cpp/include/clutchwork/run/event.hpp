@@ -47,7 +47,7 @@ bool events_crowd(Workspace<T>& ws, int direction) {
 /// How a run ends whose events crowd: one that jams again and again is not stopped by its impulses.
 template <class T>
 Status crowded(const Workspace<T>& ws) {
-  return ws.happened.cause == Cause::jam ? Status::unbalanced : Status::zeno;
+  return ws.event_context.cause == Cause::jam ? Status::unbalanced : Status::zeno;
 }
 
 /// Whether the knots of a signal crowd; told by the number of the signal, without a component.

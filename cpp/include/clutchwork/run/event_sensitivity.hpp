@@ -40,7 +40,8 @@ void move_integrals(Form& form, Step<Form>& step, const T& by) {
     for (int n = 0; n < sys.nodes; ++n) ws.angle[n] += node_value(sys, n, shot.v, ws.in.prescribed) * by;
   }
   if (!ws.options.work) return;
-  for (int k = 0; k < ws.n_branches; ++k) ws.work[ws.branch[k].direction] += ws.seen.torque[k] * ws.seen.rate[k] * by;
+  for (int k = 0; k < ws.n_branches; ++k)
+    ws.work[ws.branch[k].direction] += ws.observed.torque[k] * ws.observed.rate[k] * by;
   for (int p = 0; p < np; ++p) ws.prescribed_work[p] += source_torque(ws, shot, p) * ws.in.prescribed[p] * by;
   for (int i = 0; i < sys.supplies; ++i) ws.supplied[i] += supply_power(ws, i, shot.y + form.nz()) * by;
   for (int m = 0; m < sys.meters; ++m) ws.metered[m] += metered_power(ws, shot, m) * by;
@@ -137,7 +138,7 @@ void note_others(Workspace<T>& ws, int located) {
     if (c == located || (mode != forward && mode != backward) || !may_stick(ws, c) || !ws.contact.pressed[c]) continue;
     // at the event, which moves, the slip of one that locks at the same instant does not change
     const T slip = rate_of(ws, int(ws.sys.elements) + c);
-    const double slope = value(ws.happened.slope[c]);
+    const double slope = value(ws.event_context.slope[c]);
     if (abs(value(slip)) > tolerance || slope == 0 || ws.moved.n == 0 || ws.moved.n > Moved<T>::room) continue;
     double& apart = ws.moved.graze[ws.moved.n - 1].together;
     apart = larger(apart, largest_difference(slip * T(-1 / slope), T(0)));

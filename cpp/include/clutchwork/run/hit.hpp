@@ -8,7 +8,7 @@ namespace clutchwork {
 /// The first thing that happens inside a step, and of which guard.
 struct Hit {
   int what = -1;       ///< place of its guard in the list of guards, -1: nothing
-  int index = -1;      ///< guard, locked contact, dependent set, spare, contact, branch, or process
+  int index = -1;      ///< guard, locked contact, dependent set, redundant contact, contact, branch, or process
   double s = 1;        ///< where in the step, 0 to 1
   int who = -1;        ///< what of a law leaves its piece; the end that a stop meets
   bool bends = false;  ///< what is held bends there

@@ -80,7 +80,7 @@ template <class Form>
 double imbalance(Form& form, Step<Form>& step, bool& moved) {
   auto& ws = form.ws;
   moved = follow_pieces(form, step.y0()) || moved;
-  linearize(form, ws.time, step.y0(), step.f0(), step.dt0(), ws.here);
+  linearize(form, ws.time, step.y0(), step.f0(), step.dt0(), ws.step_start);
   double square = 0;
   for (int i = 0; i < form.nz(); ++i) {
     if (is_massless(ws, i)) square += value(step.f0()[i]) * value(step.f0()[i]);
@@ -132,7 +132,7 @@ template <class Form, class T = typename Form::Scalar>
 void change_massless(Form& form, double t, const T* y, T* d, T* b, T* dt) {
   Workspace<T>& ws = form.ws;
   const int nz = form.nz(), n = form.n();
-  linearize(form, t, y, b, dt, ws.here);
+  linearize(form, t, y, b, dt, ws.step_start);
   for (int i = 0; i < nz; ++i) b[i] = T(0);
   if constexpr (Form::full) {
     for (int i = 0; i < nz; ++i) {

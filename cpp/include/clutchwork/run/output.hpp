@@ -172,7 +172,7 @@ void fill_numbers(Form& form, Step<Form>& step, double s, double s_end, R* row) 
   }
   fill_contacts(ws, shot, row);
   if (sys.flows > 0) {
-    shared_rates(ws, shot.rate, ws.seen.torque, shot.y + form.nz(), shot.d + form.nz());
+    shared_rates(ws, shot.rate, ws.observed.torque, shot.y + form.nz(), shot.d + form.nz());
     for (int f = 0; f < sys.flows; ++f) row[ws.row.flow + f] = shown<R>(flow_value(ws, f));
   }
   for (int i = 0; i < sys.inputs; ++i) row[ws.row.input + i] = shown<R>(T(signal_value(ws, i, step.t + s * step.h)));

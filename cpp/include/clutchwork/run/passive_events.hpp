@@ -6,10 +6,10 @@
 #include <clutchwork/contacts/sticking.hpp>
 #include <clutchwork/motion/dynamics.hpp>
 #include <clutchwork/motion/shared.hpp>
+#include <clutchwork/run/clamp_loads.hpp>
 #include <clutchwork/run/event.hpp>
 #include <clutchwork/run/guards/torques.hpp>
 #include <clutchwork/run/integrator/memory.hpp>
-#include <clutchwork/run/loads.hpp>
 #include <clutchwork/run/massless.hpp>
 #include <clutchwork/run/processes.hpp>
 #include <clutchwork/run/settle.hpp>
@@ -39,15 +39,15 @@ void export_state(Form& form, const T* y) {
 template <class T>
 bool is_beyond(Workspace<T>& ws) {
   for (int a = 0; a < ws.held.n; ++a) {
-    const T torque = ws.here.multiplier[a], capacity = ws.here.capacity[a];
+    const T torque = ws.step_start.multiplier[a], capacity = ws.step_start.capacity[a];
     if (!is_rigid(ws, ws.held.contact[a]) && ws.held.in_set[a] == 0 && margin(ws, a, torque, capacity) < 0) return true;
   }
   for (int k = 0; k < ws.held.n_sets; ++k) {
-    if (value(ws.here.room[k]) < 0) return true;
+    if (value(ws.step_start.room[k]) < 0) return true;
   }
   const double noise = ws.loads.n_sliding > 0 ? 1e-12 * torque_size(ws) : 0;
   for (int i = 0; i < ws.loads.n_sliding; ++i) {
-    if (value(ws.here.clearance[ws.loads.sliding[i]]) < -noise) return true;
+    if (value(ws.step_start.clearance[ws.loads.sliding[i]]) < -noise) return true;
   }
   return false;
 }
@@ -131,12 +131,12 @@ bool chatters(Workspace<T>& ws) {
   if (steps - ws.guard.reversals_since > window) ws.guard.reversals_since = steps, ws.guard.reversals = 0;
   for (int i = 0; i < ws.guard.n_chattering; ++i) {
     const int k = ws.guard.chattering[i];
-    const double rate = value(ws.here.rate[k]);
+    const double rate = value(ws.step_start.rate[k]);
     int& heading = ws.heading[ws.branch[k].direction];
     if (rate * heading >= 0) continue;
     heading = -heading;
     // a slip that was driven through zero goes on; one that chatters is pushed back
-    if (rate * value(ws.here.slope[k]) >= 0) continue;
+    if (rate * value(ws.step_start.slope[k]) >= 0) continue;
     ws.detail.component = ws.branch[k].direction;
     ws.detail.value = rate;
     if (++ws.guard.reversals > most) return true;
@@ -157,14 +157,14 @@ void pass_line(Form& form, const LineGuard& guard) {
     const int c = b.direction - int(ws.sys.elements), from = ws.contact.mode[c];
     ws.contact.mode[c] = b.sign = -from;
     const double e = kinetic_energy(ws);
-    record(ws, {c, from, ws.contact.mode[c], Cause::passing, value(ws.here.slope[guard.branch]), 0.0, 0.0, e, e});
+    record(ws, {c, from, ws.contact.mode[c], Cause::passing, value(ws.step_start.slope[guard.branch]), 0.0, 0.0, e, e});
   }
   list_lines(ws);
 }
 
 /// Open contacts that were at rest and have started to move get their direction. docs/theory/events.md, rule 5
 template <class Form>
-void direct_open(Form& form, const Edge<typename Form::Scalar>& edge) {
+void direct_open(Form& form, const StepEnd<typename Form::Scalar>& edge) {
   auto& ws = form.ws;
   bool changed = false;
   for (int k = ws.n_branches; k < ws.n_rates; ++k) {

@@ -4,20 +4,20 @@
 #include <clutchwork/contacts/locked.hpp>
 #include <clutchwork/contacts/ratios.hpp>
 #include <clutchwork/contacts/sticking.hpp>
+#include <clutchwork/run/clamp_loads.hpp>
 #include <clutchwork/run/event.hpp>
 #include <clutchwork/run/event_sensitivity.hpp>
 #include <clutchwork/run/guards/list.hpp>
 #include <clutchwork/run/hit.hpp>
 #include <clutchwork/run/integrator/memory.hpp>
-#include <clutchwork/run/loads.hpp>
 #include <clutchwork/run/massless.hpp>
 #include <clutchwork/run/output.hpp>
-#include <clutchwork/run/pace.hpp>
 #include <clutchwork/run/passive_events.hpp>
 #include <clutchwork/run/power.hpp>
 #include <clutchwork/run/snapshot.hpp>
 #include <clutchwork/run/step.hpp>
 #include <clutchwork/run/step_calls.hpp>
+#include <clutchwork/run/step_size.hpp>
 #include <clutchwork/run/stiffness.hpp>
 #include <clutchwork/run/variation.hpp>
 #include <clutchwork/workspace.hpp>
@@ -32,9 +32,9 @@ struct NoVariation {
 
 /// Integration until an event, the end time, or a full buffer.
 template <class Form>
-class Phase : public Pace<typename Form::Scalar> {
+class Phase : public StepSize<typename Form::Scalar> {
   using T = typename Form::Scalar;
-  using Base = Pace<T>;
+  using Base = StepSize<T>;
   using Base::landings_, Base::rejected_, Base::cut_, Base::over_, Base::status_;
   using Base::what_is_spent, Base::plan_step, Base::end_of_step, Base::time_at, Base::shorten, Base::has_rows,
       Base::move_on;
@@ -134,7 +134,7 @@ class Phase : public Pace<typename Form::Scalar> {
     // at a knot the row is the right limit, which comes after it
     const Status shown = ws_.time < ws_.in.next_knot ? emit_start(form_, step_, sink_, event) : Status::running;
     if (shown != Status::running) return leave(shown);
-    look_here();
+    linearize_start();
     // kept, so that a run takes the same steps whether or not it is asked for a row here
     if (event) ws_.last_step *= calls_.restart;
     h_ = ws_.last_step > 0 ? ws_.last_step : first_step(taken_form(), taken_step(), t_end_ - ws_.time);
@@ -160,15 +160,15 @@ class Phase : public Pace<typename Form::Scalar> {
   }
   /// The modes must be decided anew.
   void decide(Cause cause, int contact = -1) {
-    ws_.happened.cause = cause;
-    ws_.happened.contact = contact;
+    ws_.event_context.cause = cause;
+    ws_.event_context.contact = contact;
     over_ = true;
   }
   /// The run ends with the present state of the phase, which nobody exports.
   void end(Status status) { status_ = status; }
   /// Nothing needs a decision, but for torques that have jumped beyond what locked contacts hold.
   void go_on(bool jumped) {
-    look_on();
+    linearize_behind_event();
     if (jumped && is_beyond(taken_form().ws)) return decide(Cause::other_event);
     if (ws_.guard.n_chattering > 0 && chatters(ws_)) return leave(Status::chatter);
     show_behind(false);
@@ -176,7 +176,7 @@ class Phase : public Pace<typename Form::Scalar> {
   }
   /// The same where no restart follows that would shorten the step.
   void go_on_as_before() {
-    look_on();
+    linearize_behind_event();
     h_ = ws_.last_step = smaller(ws_.last_step, larger(h_, reach_));
   }
   /// The next step is not longer than `most` says, where the phase goes on.
@@ -191,25 +191,25 @@ class Phase : public Pace<typename Form::Scalar> {
   }
 
  private:
-  CLUTCHWORK_INLINE void look_here() {
+  CLUTCHWORK_INLINE void linearize_start() {
     if constexpr (has_tangents<T>)
       varied_.reflect_here();
     else
-      calls_.look(form_, step_, ws_.time, step_.y0(), step_.f0(), step_.dt0(), ws_.here);
+      calls_.linearize_at(form_, step_, ws_.time, step_.y0(), step_.f0(), step_.dt0(), ws_.step_start);
   }
-  CLUTCHWORK_INLINE void look_at_end() {
+  CLUTCHWORK_INLINE void linearize_end() {
     if constexpr (has_tangents<T>)
-      varied_.look_at_end(end_of_step());
+      varied_.linearize_end(end_of_step());
     else
-      calls_.look(form_, step_, end_of_step(), step_.y1(), step_.f1(), step_.dt1(), ws_.there);
+      calls_.linearize_at(form_, step_, end_of_step(), step_.y1(), step_.f1(), step_.dt1(), ws_.step_end);
   }
 
   /// The same where the phase goes on behind an event.
-  CLUTCHWORK_INLINE void look_on() {
+  CLUTCHWORK_INLINE void linearize_behind_event() {
     if constexpr (has_tangents<T>) {
       if (leave_event(form_, step_)) balance_massless(form_, step_);
     }
-    look_here();
+    linearize_start();
   }
 
   /// Speeds without inertia have jumped to their balance: the modes were decided with other torques. Once at an
@@ -218,8 +218,8 @@ class Phase : public Pace<typename Form::Scalar> {
   void decide_again() {
     ws_.guard.balanced_at = ws_.time;
     export_state(form_, step_.y0());
-    for (int c = 0; c < ws_.sys.contacts; ++c) ws_.happened.mode[c] = ws_.contact.mode[c];
-    ws_.happened.contact = -1;
+    for (int c = 0; c < ws_.sys.contacts; ++c) ws_.event_context.mode[c] = ws_.contact.mode[c];
+    ws_.event_context.contact = -1;
     over_ = true;
   }
 
@@ -249,10 +249,10 @@ class Phase : public Pace<typename Form::Scalar> {
     if constexpr (!Form::small) {
       if (jumps && balance_massless(form_, step_)) export_state(form_, step_.y0());
     }
-    look_here();
+    linearize_start();
     if (knot_lets_go(taken_form().ws)) return decide(Cause::input);
     if constexpr (has_tangents<T>) {
-      if (leave_event(form_, step_)) balance_massless(form_, step_), look_here();
+      if (leave_event(form_, step_)) balance_massless(form_, step_), linearize_start();
     }
     show_behind(jumps);
   }
@@ -263,7 +263,7 @@ class Phase : public Pace<typename Form::Scalar> {
     const Status shown = emit_start(form_, step_, sink_, true);
     if (shown != Status::running) return leave(shown);
     if (!jumps && !row_jumps(ws_, sink_)) --sink_.at;
-    look_here();
+    linearize_start();
   }
 
   // ------------------------------------------------------------------------------------------------------------- step
@@ -280,7 +280,7 @@ class Phase : public Pace<typename Form::Scalar> {
       if (ws.ratios.n > 0 && ws.ratios.jammed < 0) ws.ratios.jammed = turned_over(ws);
       if (ws.ratios.n > 0 && ws.ratios.jammed < 0) ws.ratios.jammed = passed_over(ws.ratios);
     }
-    look_at_end();
+    linearize_end();
     return true;
   }
 
@@ -310,7 +310,7 @@ class Phase : public Pace<typename Form::Scalar> {
     if (must_land(hit)) {
       land(hit.s);
     } else if (misses_rest(hit)) {
-      retake();
+      reject_and_shrink();
     } else if (Form::full && hit.none() && taken_form().ws.ratios.jammed >= 0) {
       jam(taken_form().ws.ratios.jammed);
     } else if (reach(hit.s)) {
@@ -341,15 +341,15 @@ class Phase : public Pace<typename Form::Scalar> {
     ++ws_.statistics.rejected;
     if (landings_++ == 0) before_ = larger(h_, reach_);
     h_ = s * reach_;
-    look_back();
+    linearize_again();
   }
   /// The derivatives are those of the other end.
-  void look_back() {
+  void linearize_again() {
     ws_.in.time = -infinity;
     if constexpr (has_tangents<T>)
-      varied_.look_here();
+      varied_.linearize_start();
     else
-      look_here();
+      linearize_start();
   }
 
   /// Whether a step towards rest has run over a change of the coefficient: the two solutions whose difference is its
@@ -359,13 +359,13 @@ class Phase : public Pace<typename Form::Scalar> {
     fit(taken_form(), taken_step());
     const double missed = error_until(taken_form(), taken_step(), inner);
     if (missed > most_inner_error) return error_ = missed, true;
-    look_at_end();
+    linearize_end();
     return false;
   }
 
-  void retake() {
+  void reject_and_shrink() {
     --ws_.statistics.steps;
-    look_back();
+    linearize_again();
     reject();
   }
 
@@ -431,16 +431,16 @@ class Phase : public Pace<typename Form::Scalar> {
       step_.f0()[i] = step_.f1()[i];
       step_.dt0()[i] = step_.dt1()[i];
     }
-    const Edge<T> edge = ws_.here;
-    ws_.here = ws_.there;
-    ws_.there = edge;
+    const StepEnd<T> edge = ws_.step_start;
+    ws_.step_start = ws_.step_end;
+    ws_.step_end = edge;
     move_on();
     if constexpr (has_tangents<T>) varied_.accept();
     if (ws_.guard.n_undirected > 0) {
       const int before = ws_.guard.n_undirected;
-      direct_open(form_, ws_.here);
+      direct_open(form_, ws_.step_start);
       if constexpr (has_tangents<T>) {
-        if (ws_.guard.n_undirected != before) look_here();
+        if (ws_.guard.n_undirected != before) linearize_start();
       }
     }
     if (ws_.guard.n_chattering > 0 && chatters(ws_)) leave(Status::chatter);

@@ -37,8 +37,8 @@ CLUTCHWORK_INLINE int fitted_powers(const Workspace<T>& ws) {
 template <class T>
 T supply_power(const Workspace<T>& ws, int i, const T* state) {
   const int k = ws.branch_of[ws.sys.supply_element[i]];
-  const T torque = ws.seen.torque[k];
-  return torque * ws.seen.rate[k] + branch_heat(ws, ws.branch[k], ws.seen.rate[k], state, Dual<T, 1>(torque)).v;
+  const T torque = ws.observed.torque[k];
+  return torque * ws.observed.rate[k] + branch_heat(ws, ws.branch[k], ws.observed.rate[k], state, Dual<T, 1>(torque)).v;
 }
 
 /// Power through a metered line: what it puts on its node, times the speed of that.
@@ -62,7 +62,7 @@ void powers_at(Form& form, Step<Form>& step, double s, Add&& add) {
     shot = take_snapshot(form, step, s);
   else
     step.calls->observe(form, step, s);
-  for (int k = 0; k < ws.n_branches; ++k) add(ws.branch[k].direction, ws.seen.torque[k] * ws.seen.rate[k]);
+  for (int k = 0; k < ws.n_branches; ++k) add(ws.branch[k].direction, ws.observed.torque[k] * ws.observed.rate[k]);
   for (int p = 0; p < np; ++p) add(nd + p, source_torque(ws, shot, p) * ws.in.prescribed[p]);
   for (int i = 0; i < ws.sys.supplies; ++i) add(nd + np + i, supply_power(ws, i, step.point() + form.nz()));
   const int first = nd + np + int(ws.sys.supplies);

@@ -50,7 +50,7 @@ Snapshot<T> take_snapshot(Form& form, Step<Form>& step, double s) {
   const auto& sys = ws.sys;
   const int nv = int(sys.speeds), ne = int(sys.elements), nc = int(sys.contacts);
   const double t = step.t + s * step.h;
-  Snapshot<T> shot{step.point(), step.slope(), ws.seen.rate, ws.out.v, ws.out.dv};
+  Snapshot<T> shot{step.point(), step.slope(), ws.observed.rate, ws.out.v, ws.out.dv};
   interpolate(form, step, s, shot.y);
   inputs_at(ws, t);
   input_slopes_at(ws, t);
@@ -62,11 +62,11 @@ Snapshot<T> take_snapshot(Form& form, Step<Form>& step, double s) {
   for (int k = ws.n_branches; k < ws.n_rates; ++k) shot.rate[k] = form.rate(k, shot.y) + offset_rate(ws, k);
   for (int d = 0; d < ne + nc; ++d) {
     const int k = ws.branch_of[d];
-    ws.out.torque[d] = k >= 0 && k < ws.n_branches ? ws.seen.torque[k] : T(0);
+    ws.out.torque[d] = k >= 0 && k < ws.n_branches ? ws.observed.torque[k] : T(0);
   }
-  multipliers(ws, ws.seen.torque, true, ws.seen.carried);
+  multipliers(ws, ws.observed.torque, true, ws.observed.carried);
   if (sys.loads > 0) loads_seen(ws);
-  locked_torques(ws, ws.seen.carried, [&](int c, T x) { ws.out.torque[ne + c] += x; });
+  locked_torques(ws, ws.observed.carried, [&](int c, T x) { ws.out.torque[ne + c] += x; });
   if constexpr (Form::full) {
     if (ws.ratios.n > 0 && ws.held.n_sets > 0) carry_shares(form);
   }
@@ -106,9 +106,9 @@ void note_before(Form& form, Step<Form>& step, double s) {
   const auto shot = take_snapshot(form, step, s);
   for (int c = 0; c < ws.sys.contacts; ++c) {
     const int d = int(ws.sys.elements) + c, k = ws.branch_of[d];
-    ws.happened.torque[c] = ws.out.torque[d];
-    ws.happened.slope[c] = k >= 0 ? form.rate(k, shot.d) + offset_slope(ws, k) : 0.0;
-    ws.happened.mode[c] = ws.contact.mode[c];
+    ws.event_context.torque[c] = ws.out.torque[d];
+    ws.event_context.slope[c] = k >= 0 ? form.rate(k, shot.d) + offset_slope(ws, k) : 0.0;
+    ws.event_context.mode[c] = ws.contact.mode[c];
   }
 }
 

@@ -25,7 +25,8 @@ void keep_ties(FullForm<T>& form, Step<FullForm<T>>& step, Real<T> t, T* y) {
 
 /// Derivatives, rates, slopes, multipliers at one end of the step.
 template <class Form, class T = typename Form::Scalar>
-CLUTCHWORK_INLINE void look_inline(Form& form, Step<Form>& step, Real<T> t, const T* y, T* d, T* dt, Edge<T>& edge) {
+CLUTCHWORK_INLINE void linearize_end_inline(Form& form, Step<Form>& step, Real<T> t, const T* y, T* d, T* dt,
+                                            StepEnd<T>& edge) {
   linearize(form, t, y, d, dt, edge);
   if constexpr (Form::small) {
     slopes(form, d, edge);
@@ -40,8 +41,9 @@ CLUTCHWORK_INLINE void look_inline(Form& form, Step<Form>& step, Real<T> t, cons
 }
 
 template <class Form, class T = typename Form::Scalar>
-[[gnu::noinline]] void look(Form& form, Step<Form>& step, Real<T> t, const T* y, T* d, T* dt, Edge<T>& edge) {
-  look_inline(form, step, t, y, d, dt, edge);
+[[gnu::noinline]] void linearize_at(Form& form, Step<Form>& step, Real<T> t, const T* y, T* d, T* dt,
+                                    StepEnd<T>& edge) {
+  linearize_end_inline(form, step, t, y, d, dt, edge);
 }
 
 /// A first step from the sizes of state and slope (E. Hairer, G. Wanner, Solving ODEs I, section II.4, shortened).
@@ -100,7 +102,7 @@ double signal_step(const Workspace<T>& ws) {
   if constexpr (!has_lanes<T>) {
     for (int i = 0; i < ws.guard.n_switching; ++i) {
       const int k = ws.guard.switching[i];
-      if (ws.branch[k].law < 0) fastest = larger(fastest, own_pace(ws, ws.branch[k], ws.here.rate[k]));
+      if (ws.branch[k].law < 0) fastest = larger(fastest, own_pace(ws, ws.branch[k], ws.step_start.rate[k]));
     }
   }
   return fastest > 0 ? (resolves_work(ws) ? 0.5 : 1.5) / fastest : infinity;
@@ -120,7 +122,7 @@ double work_error(Form& form, Step<Form>& step) {
       const double s = start + width * gauss.node[g];
       step.calls->observe(form, step, s);
       for (int k = 0; k < ws.n_branches; ++k)
-        sum[k] += T(width * step.h * gauss.weight[g]) * ws.seen.torque[k] * ws.seen.rate[k];
+        sum[k] += T(width * step.h * gauss.weight[g]) * ws.observed.torque[k] * ws.observed.rate[k];
     }
   };
   add(0, 1, whole), add(0, 0.5, halves), add(0.5, 0.5, halves);
@@ -133,7 +135,7 @@ double work_error(Form& form, Step<Form>& step) {
   return error;
 }
 
-/// Rates and torques of the branches at the share s of a step, in ws.seen; the state there is step.point().
+/// Rates and torques of the branches at the share s of a step, in ws.observed; the state there is step.point().
 template <class Form>
 [[gnu::noinline]] void observe_inside(Form& form, Step<Form>& step, double s) {
   interpolate(form, step, s, step.point());
@@ -175,7 +177,7 @@ CLUTCHWORK_INLINE Truth<T> nears_rest(const Workspace<T>& ws) {
   Truth<T> slides_on(true);
   for (int k = 0; k < ws.n_branches; ++k) {
     if (ws.branch[k].law < 0 || ws.branch[k].compliant) continue;
-    slides_on = slides_on && abs(value(ws.there.rate[k])) >= Real<T>(0.5) * abs(value(ws.here.rate[k]));
+    slides_on = slides_on && abs(value(ws.step_end.rate[k])) >= Real<T>(0.5) * abs(value(ws.step_start.rate[k]));
   }
   return !slides_on;
 }
@@ -187,7 +189,7 @@ void blame(Form& form, Step<Form>& step) {
   ws.detail.component = -1;
   observe(form, ws.time, step.y0(), step.slope());
   for (int k = 0; k < ws.n_branches; ++k) {
-    const double x = value(ws.seen.torque[k]);
+    const double x = value(ws.observed.torque[k]);
     if (x - x == 0) continue;
     ws.detail.component = ws.branch[k].direction;
     ws.detail.value = x;

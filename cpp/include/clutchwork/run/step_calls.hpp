@@ -18,7 +18,7 @@ struct PlainCalls {
   }
   [[gnu::noinline]] static void fit(Form& form, Step<Form>& step) { Integrator::prepare_dense(form, step); }
   static constexpr StepCalls<Form> all() {
-    return {advance, fit, look<Form>, observe_inside<Form>, Integrator::stiff, Integrator::restart};
+    return {advance, fit, linearize_at<Form>, observe_inside<Form>, Integrator::stiff, Integrator::restart};
   }
 };
 
@@ -27,10 +27,11 @@ template <class T, int NZ, int NS>
 struct SizedLook {
   using Any = SmallForm<T>;
   using Form = SmallForm<T, NZ, NS>;
-  [[gnu::noinline]] static void look(Any& any, Step<Any>&, Real<T> t, const T* y, T* d, T* dt, Edge<T>& edge) {
+  [[gnu::noinline]] static void linearize_at(Any& any, Step<Any>&, Real<T> t, const T* y, T* d, T* dt,
+                                             StepEnd<T>& edge) {
     Form form(any.ws);
     Step<Form> step(form);
-    look_inline(form, step, t, y, d, dt, edge);
+    linearize_end_inline(form, step, t, y, d, dt, edge);
   }
   [[gnu::noinline]] static void observe(Any& any, Step<Any>& step, double s) {
     Form form(any.ws);
@@ -60,7 +61,7 @@ struct SizedCalls {
   }
   static constexpr StepCalls<Any> all() {
     using Sized = SizedLook<T, NZ, NS>;
-    return {advance, fit, Sized::look, Sized::observe, Integrator::stiff, Integrator::restart};
+    return {advance, fit, Sized::linearize_at, Sized::observe, Integrator::stiff, Integrator::restart};
   }
 };
 

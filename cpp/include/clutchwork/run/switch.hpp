@@ -12,8 +12,8 @@
 #include <clutchwork/contacts/ratios.hpp>
 #include <clutchwork/contacts/sticking.hpp>
 #include <clutchwork/contacts/stops.hpp>
+#include <clutchwork/run/clamp_loads.hpp>
 #include <clutchwork/run/event.hpp>
-#include <clutchwork/run/loads.hpp>
 #include <clutchwork/run/settle.hpp>
 #include <clutchwork/run/snapshot.hpp>
 #include <clutchwork/workspace.hpp>
@@ -30,7 +30,7 @@ T torque_after(const Workspace<T>& ws, int c) {
   const T held = ws.contact.mode[c] == locked ? ws.decision.torque[c] : T(0);
   if (ws.contact.mode[c] == locked && !ws.contact.compliant[c]) return held;
   const Branch<T> b = make_branch(ws, d, ws.contact.mode[c]);
-  return held + contact_torque(ws, b, rate_of(ws, d), ws.state, ws.seen.state_rates);
+  return held + contact_torque(ws, b, rate_of(ws, d), ws.state, ws.observed.state_rates);
 }
 
 /// Slip acceleration of every contact right after the decision, in decision.acceleration.
@@ -43,7 +43,7 @@ void accelerations_after(Workspace<T>& ws) {
   free_motion(ws, stuck, q);
   for (int c = 0; c < nc; ++c) {
     const bool holds = (ws.contact.mode[c] == locked && ws.contact.loaded[c]) || ws.loads.of[c] >= 0;
-    if (holds) ws.geometry.white.add(ne + c, ws.decision.torque[c], q);
+    if (holds) ws.geometry.mass_weighted.add(ne + c, ws.decision.torque[c], q);
   }
   for (int c = 0; c < nc; ++c) out[c] = ws.contact.mode[c] == locked ? T(0) : slip_acceleration(ws, c, q);
 }
@@ -74,7 +74,7 @@ bool jumps_between(Workspace<T>& ws, int d, int piece, int other) {
   Branch<T> b = make_branch(ws, d, 0);
   auto torque = [&](int at) {
     b.piece = at;
-    return value(branch_torque_once(ws, b, rate_of(ws, d), ws.state, ws.seen.state_rates));
+    return value(branch_torque_once(ws, b, rate_of(ws, d), ws.state, ws.observed.state_rates));
   };
   const double here = torque(piece), there = torque(other);
   return abs(there - here) > least * larger(abs(here), abs(there));
@@ -190,21 +190,21 @@ bool is_struck_off(const Workspace<T>& ws, int c, T slip_before) {
 /// `running`: all is decided. docs/theory/contacts.md, rule 9
 template <class T>
 Status decide(Workspace<T>& ws, bool at_start) {
-  int located = ws.happened.contact;
+  int located = ws.event_context.contact;
   const bool stops = has_stops(ws);
   const T slip = located >= 0 ? rate_of(ws, int(ws.sys.elements) + located) : T(0);
   if (!settle_impulses(ws, at_start) || (stops && !collide(ws))) return Status::no_mode;
   if (located >= 0 && is_struck_off(ws, located, slip)) located = -1;
   see_speeds(ws);
   for (int c = 0; at_start && c < ws.sys.contacts; ++c) {
-    ws.contact.impulse[c] = ws.contact.mode[c] == locked && ws.happened.mode[c] != locked;
+    ws.contact.impulse[c] = ws.contact.mode[c] == locked && ws.event_context.mode[c] != locked;
   }
   Status status = ws.loads.jammed < 0 ? settle(ws, located) : Status::unbalanced;
   for (int round = 0; status == Status::unbalanced && round < ws.sys.loads; ++round) {
     const int c = ws.loads.jammed >= 0 ? ws.loads.jammed : ws.detail.component - int(ws.sys.elements);
     ws.loads.jammed = -1;
     if (c < 0 || !stop_jammed(ws, c)) return status;
-    ws.happened.cause = Cause::jam, ws.happened.contact = c;
+    ws.event_context.cause = Cause::jam, ws.event_context.contact = c;
     ws.contact.impulse[c] = at_start;
     status = settle(ws, -1);
   }
@@ -226,7 +226,7 @@ void report_changes(Workspace<T>& ws, bool at_start, double energy_before) {
   share_decided(ws);
   const double energy_after = kinetic_energy(ws);
   accelerations_after(ws);
-  const Happened<T>& before = ws.happened;
+  const EventContext<T>& before = ws.event_context;
   for (int c = 0; c < ws.sys.contacts; ++c) {
     const int mode = ws.contact.mode[c];
     // one that jams may slip on as before
@@ -254,10 +254,10 @@ void jump(Workspace<T>& ws) {
 /// Decide the modes at the present instant and report what changed.
 template <class T>
 Status switch_modes(Workspace<T>& ws) {
-  const int ne = int(ws.sys.elements), located = ws.happened.contact;
-  const bool at_start = ws.happened.cause == Cause::initial;
+  const int ne = int(ws.sys.elements), located = ws.event_context.contact;
+  const bool at_start = ws.event_context.cause == Cause::initial;
   // bounces end by their own rule. docs/theory/play.md, rule 2
-  const bool bounces = ws.happened.cause == Cause::impact && ws.time > ws.contact.met_at[located];
+  const bool bounces = ws.event_context.cause == Cause::impact && ws.time > ws.contact.met_at[located];
   if (located >= 0 && !bounces && events_crowd(ws, ne + located)) return crowded(ws);
   for (int c = 0; c < ws.sys.contacts; ++c) ws.contact.struck[c] = 0;
   ws.detail.component = located >= 0 ? ne + located : -1;
@@ -265,7 +265,7 @@ Status switch_modes(Workspace<T>& ws) {
 
   forget_forced(ws);
   rest_at_ends(ws);
-  if (ws.happened.cause == Cause::slip_zero && located >= 0) ws.contact.forced[located] = 0;
+  if (ws.event_context.cause == Cause::slip_zero && located >= 0) ws.contact.forced[located] = 0;
   if (!at_start) jump(ws);
   const BesideRatios<T> beside(ws);
   const int stuck = at_start ? -1 : ws.ratios.jammed;
@@ -276,12 +276,12 @@ Status switch_modes(Workspace<T>& ws) {
   if (ws.ratios.n > 0) settle_rows(ws);
   if (!at_start) see_speeds(ws);
   if constexpr (has_tangents<T>) {
-    if (ws.happened.cause == Cause::slip_zero) note_others(ws, located);
+    if (ws.event_context.cause == Cause::slip_zero) note_others(ws, located);
   }
   const double energy_before = kinetic_energy(ws);
   const Status decided = decide(ws, at_start);
   if (decided != Status::running) return decided;
-  if (ws.happened.cause == Cause::impact) ws.contact.met_at[located] = ws.time;
+  if (ws.event_context.cause == Cause::impact) ws.contact.met_at[located] = ws.time;
   ws.fresh_phase = true;
   if (ws.contact.failed >= 0) {
     ws.detail.component = ne + ws.contact.failed;

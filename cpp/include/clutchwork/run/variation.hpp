@@ -70,17 +70,17 @@ class Variation {
     mass_moves_ = moves(ws_.rows.mass.val, ws_.rows.mass.first[form.nz()]);
     take_values(step_.y0(), form.n(), step.y0());
     known_ = false;
-    look_here();
+    linearize_start();
   }
-  void look_here() {
+  void linearize_start() {
     form.ws.in.time = -infinity;
-    calls_.look(form, step, ws_.time, step.y0(), step.f0(), step.dt0(), form.ws.here);
-    give_edge(form.ws.here, ws_.here);
+    calls_.linearize_at(form, step, ws_.time, step.y0(), step.f0(), step.dt0(), form.ws.step_start);
+    give_end(form.ws.step_start, ws_.step_start);
     at_ = 0, other_at_ = -1;
   }
-  void look_at_end(double end) {
-    calls_.look(form, step, end, step.y1(), step.f1(), step.dt1(), form.ws.there);
-    give_edge(form.ws.there, ws_.there);
+  void linearize_end(double end) {
+    calls_.linearize_at(form, step, end, step.y1(), step.f1(), step.dt1(), form.ws.step_end);
+    give_end(form.ws.step_end, ws_.step_end);
     at_ = 1;
   }
 
@@ -119,10 +119,10 @@ class Variation {
     for (int i = 0; i < form.n(); ++i) {
       step.y0()[i] = step.y1()[i], step.f0()[i] = step.f1()[i], step.dt0()[i] = step.dt1()[i];
     }
-    const Edge<double> edge = form.ws.here;
-    form.ws.here = form.ws.there, form.ws.there = edge;
+    const StepEnd<double> edge = form.ws.step_start;
+    form.ws.step_start = form.ws.step_end, form.ws.step_end = edge;
     form.ws.time = ws_.time;
-    give_edge(form.ws.here, ws_.here), give_edge(form.ws.there, ws_.there);
+    give_end(form.ws.step_start, ws_.step_start), give_end(form.ws.step_end, ws_.step_end);
     if (ws_.options.work) take_values(ws_.work, ws_.n_directions, form.ws.work);
     at_ = 0, other_at_ = -1;
   }
@@ -198,9 +198,9 @@ class Variation {
   /// The image is linearized at a share of the step; of its end it is known what a look there finds.
   void linearize_at(double share, double end) {
     if (at_ == share) return;
-    if (share == 1) return look_at_end(end);
+    if (share == 1) return linearize_end(end);
     interpolate(form, step, share, step.point());
-    linearize(form, step.t + share * step.h, step.point(), step.u(), step.slope(), form.ws.there);
+    linearize(form, step.t + share * step.h, step.point(), step.u(), step.slope(), form.ws.step_end);
     at_ = share;
   }
 
@@ -249,7 +249,7 @@ class Variation {
     }
   }
 
-  void give_edge(const Edge<double>& from, Edge<T>& to) {
+  void give_end(const StepEnd<double>& from, StepEnd<T>& to) {
     for (int k = 0; k < ws_.n_rates; ++k) to.rate[k] = T(from.rate[k]), to.slope[k] = T(from.slope[k]);
     for (int a = 0; a < ws_.held.n; ++a) to.multiplier[a] = T(from.multiplier[a]);
   }

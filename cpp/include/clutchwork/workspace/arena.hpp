@@ -16,17 +16,17 @@ struct Sizes {
   std::int64_t speeds, prescribed, supplies, meters, states, shared, nodes, elements, contacts, directions, references,
       signals, segments, flows, processes, transmissions, loads;
   bool few;
-  bool full;                ///< it runs in the full form
-  std::int64_t spares;      ///< most locked contacts that can depend on others
-  std::int64_t set;         ///< most contacts of a set that depend on each other
-  std::int64_t factor;      ///< of the mass matrix
-  std::int64_t white;       ///< mass-weighted directions
-  std::int64_t mobility;    ///< of the contacts
-  std::int64_t expansion;   ///< speeds over reduced ones, and on the way there
-  std::int64_t rate, mass;  ///< over reduced speeds
-  std::int64_t envelope;    ///< of the reduced motion
-  std::int64_t blocks;      ///< of the own states
-  std::int64_t row;         ///< of output
+  bool full;                   ///< it runs in the full form
+  std::int64_t spares;         ///< most locked contacts that can depend on others
+  std::int64_t set;            ///< most contacts of a set that depend on each other
+  std::int64_t factor;         ///< of the mass matrix
+  std::int64_t mass_weighted;  ///< mass-weighted directions
+  std::int64_t mobility;       ///< of the contacts
+  std::int64_t expansion;      ///< speeds over reduced ones, and on the way there
+  std::int64_t rate, mass;     ///< over reduced speeds
+  std::int64_t envelope;       ///< of the reduced motion
+  std::int64_t blocks;         ///< of the own states
+  std::int64_t row;            ///< of output
 
   template <class G>
   explicit Sizes(const SystemOf<G>& s)
@@ -53,7 +53,7 @@ struct Sizes {
     spares = few ? (nc > 1 || transmissions > 0 ? nc : 0) : s.spares, set = few ? spares : s.set_size;
     // those that follow loads make one set of all that is locked
     if (loads > 0) set = nc;
-    factor = few ? nv * (nv + 1) / 2 : s.factor_room, white = few ? directions * nv : s.direction_room;
+    factor = few ? nv * (nv + 1) / 2 : s.factor_room, mass_weighted = few ? directions * nv : s.direction_room;
     mobility = few ? nc * (nc + 1) / 2 : s.mobility_room;
     expansion = few ? nv * nv : s.expansion_room, rate = few ? directions * nv : s.rate_room;
     envelope = few ? nv * (nv + 1) / 2 : s.envelope_room, mass = few ? envelope : s.mass_room;

@@ -32,7 +32,7 @@ struct Contacts {
 
 /// What an event leaves to the decision: why, which contact, and how all contacts were right before it.
 template <class T>
-struct Happened {
+struct EventContext {
   Cause cause = Cause::initial;
   int contact = -1;                       ///< whose guard was hit; -1: none or several
   int* mode = nullptr;                    ///< of each contact
@@ -44,34 +44,37 @@ struct Happened {
   }
 };
 
-/// The locked contacts: carriers, which are independent or rigid, and spares, which depend on them and make sets with
-/// them: contacts/locked.hpp.
+/// The locked contacts: those that are independent or rigid, and redundant ones, which depend on them and make sets
+/// with them: contacts/locked.hpp.
 template <class T>
 struct Held {
-  int n = 0;               ///< number of carriers
+  int n = 0;               ///< number of independent contacts
   int n_fixed = 0;         ///< of those whose directions do not vary, which come first: docs/theory/varying-ratios.md
-  int* contact = nullptr;  ///< of each carrier
+  int* contact = nullptr;  ///< of each independent contact
   Envelope near;           ///< of the factor
-  int* turn = nullptr;     ///< carrier at each row of the factor
-  T* factor = nullptr;     ///< Cholesky factor of the mobility of the carriers
-  bool mapped = false;     ///< the torques of the carriers are a linear map, below
+  int* turn = nullptr;     ///< independent contact at each row of the factor
+  T* factor = nullptr;     ///< Cholesky factor of the mobility of the independent contacts
+  bool mapped = false;     ///< the torques of the independent contacts are a linear map, below
   T *reach = nullptr, *reach_prescribed = nullptr;  ///< torques by those of branches and prescribed accelerations
 
-  int n_spare = 0, n_sets = 0, n_driven = 0;
-  int *spare = nullptr, *set_first = nullptr, *set_rank = nullptr, *set_member = nullptr, *set_place = nullptr;
-  int* in_set = nullptr;  ///< of each carrier
-  int* driven = nullptr;  ///< spares whose slip the prescribed speeds can move though the carriers are locked
-  T* tie = nullptr;       ///< n_spare x contacts: direction of a spare in terms of the carriers
+  int n_redundant = 0, n_sets = 0, n_driven = 0;
+  int *redundant = nullptr, *set_first = nullptr, *set_rank = nullptr, *set_member = nullptr, *set_place = nullptr;
+  int* in_set = nullptr;  ///< of each independent contact
+  int* driven = nullptr;  ///< redundant contacts whose slip the prescribed speeds can move though the independent
+                          ///< contacts are locked
+  T* tie = nullptr;  ///< n_redundant x contacts: direction of a redundant contact in terms of the independent contacts
   bool too_many = false;  ///< more than there is room for: the system is not what it says
 
   // scratch
-  T *rhs = nullptr, *solved = nullptr;  ///< of each carrier: right-hand side of its mobility, and the solution
-  T* carried = nullptr;                 ///< torques of the carriers
-  T* motion = nullptr;                  ///< mass-weighted acceleration, of each speed
-  T* turned = nullptr;                  ///< a right-hand side in the order of the factor
+  T *rhs = nullptr,
+    *solved = nullptr;   ///< of each independent contact: right-hand side of its mobility, and the solution
+  T* carried = nullptr;  ///< torques of the independent contacts
+  T* motion = nullptr;   ///< mass-weighted acceleration, of each speed
+  T* turned = nullptr;   ///< a right-hand side in the order of the factor
   T *rows = nullptr, *basis = nullptr, *norms = nullptr, *share = nullptr;  ///< of a split of directions
   int *order = nullptr, *all = nullptr, *number = nullptr;                  ///< of the same
-  int *at = nullptr, *row = nullptr;  ///< carrier at each place of the mobility, -1: none; its row in the factor
+  int *at = nullptr,
+      *row = nullptr;  ///< independent contact at each place of the mobility, -1: none; its row in the factor
 
   template <class P, class A>
   static void lay_out(P& p, A& a, const Sizes& n) {
@@ -79,7 +82,7 @@ struct Held {
     a.take(p.contact, nc), a.take(p.near.low, nc), a.take(p.near.sky, nc), a.take(p.turn, nc);
     a.scratch(p.factor, n.mobility), a.take(p.reach, n.few ? nc * n.directions : 0);
     a.take(p.reach_prescribed, n.few ? nc * n.prescribed : 0);
-    a.take(p.spare, most), a.take(p.set_first, most + 1), a.take(p.set_rank, most), a.take(p.set_member, nc);
+    a.take(p.redundant, most), a.take(p.set_first, most + 1), a.take(p.set_rank, most), a.take(p.set_member, nc);
     a.take(p.set_place, nc), a.take(p.in_set, nc), a.take(p.driven, most), a.scratch(p.tie, most * nc);
     a.scratch(p.rhs, nc), a.scratch(p.solved, nc), a.scratch(p.carried, nc), a.scratch(p.motion, n.speeds);
     a.scratch(p.turned, nc), a.scratch(p.rows, nc * nv), a.scratch(p.basis, nv * nv);

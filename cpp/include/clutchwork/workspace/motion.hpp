@@ -42,7 +42,7 @@ template <class T>
 struct Geometry {
   Envelope inertia;                                     ///< of the factor
   T *factor = nullptr, *prescribed_momentum = nullptr;  ///< of the mass matrix
-  Compressed<T> white;                                  ///< the directions
+  Compressed<T> mass_weighted;                          ///< the directions
   T* own = nullptr;                                     ///< mobility of each direction, the square of its length
   Envelope near;                                        ///< of the mobility
   T* mobility = nullptr;                                ///< of the contacts, in an order in which neighbours are close
@@ -56,7 +56,7 @@ struct Geometry {
   static void lay_out(P& p, A& a, const Sizes& n) {
     a.take(p.inertia.low, n.speeds), a.take(p.inertia.sky, n.speeds), a.scratch(p.factor, n.factor);
     a.scratch(p.prescribed_momentum, n.prescribed * n.speeds);
-    Compressed<T>::lay_out(p.white, a, n.directions, n.white), a.scratch(p.own, n.directions);
+    Compressed<T>::lay_out(p.mass_weighted, a, n.directions, n.mass_weighted), a.scratch(p.own, n.directions);
     a.take(p.near.low, n.contacts), a.take(p.near.sky, n.contacts), a.scratch(p.mobility, n.mobility);
     a.take(p.place, n.contacts), a.take(p.at, n.contacts), a.take(p.last, n.contacts);
     a.scratch(p.column, n.speeds), a.take(p.rest, n.speeds + 2);

@@ -30,12 +30,13 @@ struct Tied {
 template <class T>
 struct Ratios {
   int n = 0;
-  T *value = nullptr, *before = nullptr;   ///< its ratio, and that before an event
-  T *pull = nullptr, *wanted = nullptr;    ///< what its row must give of the accelerations, and without followers
-  T* present = nullptr;                    ///< its ratio at the point of a phase that was evaluated last
-  T *turned = nullptr, *sorted = nullptr;  ///< that at which spares were turned last, and that of the phase meanwhile
-  T* torque = nullptr;                     ///< along its first direction
-  T* row = nullptr;                        ///< n x speeds
+  T *value = nullptr, *before = nullptr;  ///< its ratio, and that before an event
+  T *pull = nullptr, *wanted = nullptr;   ///< what its row must give of the accelerations, and without followers
+  T* present = nullptr;                   ///< its ratio at the point of a phase that was evaluated last
+  T *turned = nullptr,
+    *sorted = nullptr;  ///< that at which redundant contacts were turned last, and that of the phase meanwhile
+  T* torque = nullptr;  ///< along its first direction
+  T* row = nullptr;     ///< n x speeds
 
   // the rows that tie speeds with inertia, mass-weighted: row order[k] = sum of triangle[k, j] span[j]
   int rank = 0;
@@ -44,7 +45,7 @@ struct Ratios {
   T* drawn = nullptr;  ///< part of the acceleration along the span that the rows ask for
 
   // what they leave of the directions, which stand in the place of those of the geometry while a decision is made
-  Compressed<T> white;
+  Compressed<T> mass_weighted;
   T *own = nullptr, *mobility = nullptr;
   T* via = nullptr;     ///< directions x n: share of the row of a transmission that was taken off a direction
   T* whole = nullptr;   ///< mobility of each direction before the span was taken off
@@ -73,7 +74,7 @@ struct Ratios {
     a.scratch(p.present, n), a.scratch(p.turned, n), a.scratch(p.sorted, n);
     a.scratch(p.row, n * nv), a.take(p.order, n), a.scratch(p.span, n * nv), a.scratch(p.triangle, n * n);
     a.scratch(p.share, n), a.scratch(p.drawn, n), a.scratch(p.tied, n);
-    Compressed<T>::lay_out(p.white, a, nd, nd * nv), a.scratch(p.own, nd), a.scratch(p.whole, nd);
+    Compressed<T>::lay_out(p.mass_weighted, a, nd, nd * nv), a.scratch(p.own, nd), a.scratch(p.whole, nd);
     a.scratch(p.mobility, nc * (nc + 1) / 2), a.scratch(p.via, nd * n), a.scratch(p.part, nd * n);
     a.take(p.place, rows), a.take(p.tie, n + nc), a.take(p.column, n);
     a.scratch(p.along, rows * nv), a.scratch(p.between, rows * rows), a.scratch(p.follows, rows * n);

@@ -15,7 +15,7 @@ struct LineGuard {
 
 /// What the guards need at one end of a step.
 template <class T>
-struct Edge {
+struct StepEnd {
   T* rate;               ///< rate of each branch
   T* slope;              ///< its time derivative
   T* multiplier;         ///< torque of each locked contact
@@ -45,7 +45,7 @@ struct Guards {
   int *load = nullptr, *near = nullptr;  ///< contacts whose loads may pass zero; those that may in the present step
   int* gap = nullptr;                    ///< stops that are open
   int* bending = nullptr;                ///< locked contacts whose laws have pieces
-  int* limit = nullptr;                  ///< carriers that may break away: scratch
+  int* limit = nullptr;                  ///< independent contacts that may break away: scratch
   int* process = nullptr;                ///< processes that switch between pieces, and flows behind them
   double* load_size = nullptr;           ///< largest size that the load of a contact may have, 0: not known
   double* turned_at = nullptr;           ///< [s] when the load of a contact passed zero last
@@ -70,9 +70,9 @@ struct Guards {
 
 /// Rates and torques of the branches where they were observed last.
 template <class T>
-struct Seen {
+struct Observed {
   T *rate = nullptr, *torque = nullptr, *drift = nullptr;
-  T* carried = nullptr;      ///< torques of the carriers
+  T* carried = nullptr;      ///< torques of the independent contacts
   T* state_rates = nullptr;  ///< scratch of a torque that is asked for alone
 
   template <class P, class A>

@@ -1,9 +1,9 @@
 #pragma once
 #include <clutchwork/motion/dynamics.hpp>
+#include <clutchwork/run/clamp_loads.hpp>
 #include <clutchwork/run/guards/inputs.hpp>
 #include <clutchwork/run/hit.hpp>
 #include <clutchwork/run/integrator/memory.hpp>
-#include <clutchwork/run/loads.hpp>
 #include <clutchwork/run/locate.hpp>
 #include <clutchwork/workspace.hpp>
 

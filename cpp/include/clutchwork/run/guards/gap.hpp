@@ -53,7 +53,8 @@ double gap_crossing(Form& form, Step<Form>& step, int c, int side, double limit)
   const double end = value(stop_end(ws, c, side)), noise = stop_noise(ws, c);
   if (!(abs(end) < infinity)) return -1;
   double g0 = side * (end - value(step.y0()[i])), g1 = side * (end - value(step.y1()[i]));
-  const double leaves = -side * step.h * value(ws.here.rate[k]), arrives = -side * step.h * value(ws.there.rate[k]);
+  const double leaves = -side * step.h * value(ws.step_start.rate[k]),
+               arrives = -side * step.h * value(ws.step_end.rate[k]);
   // a start behind the end, within round-off, is on it
   if (g0 < 0) g1 -= g0, g0 = 0;
   if (g1 >= 0 && g0 + leaves / 3 >= 0 && g1 - arrives / 3 >= 0) return -1;

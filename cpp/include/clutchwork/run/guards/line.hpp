@@ -33,7 +33,7 @@ double line_crossing(Form& form, Step<Form>& step, const LineGuard& guard, doubl
   // a guard that starts on its surface must leave it as the motion does, not as the interpolant does
   // docs/theory/events.md, rule 3
   const bool fresh = abs(g0) <= 1e3 * noise;
-  const double leaving = guard.sign * step.h * value(ws.here.slope[k]);
+  const double leaving = guard.sign * step.h * value(ws.step_start.slope[k]);
   const double mend = fresh && leaving * a1 <= 0 ? leaving - a1 : 0.0;
   double b[5] = {larger(g0, 0.0), g0 + (a1 + mend) / 4, g0 + a1 / 2 + a2 / 6, g0 + 0.75 * a1 + a2 / 2 + a3 / 4, g1};
   double scale = 0;
@@ -56,7 +56,7 @@ double line_crossing(Form& form, Step<Form>& step, const LineGuard& guard, doubl
 template <class T>
 CLUTCHWORK_INLINE Truth<T> stays_clear(const Workspace<T>& ws, int k, Real<T> sign, Real<T> level, Real<T> h,
                                        Real<T> noise, Real<T>& g0, Real<T>& g1) {
-  const auto &e0 = ws.here, &e1 = ws.there;
+  const auto &e0 = ws.step_start, &e1 = ws.step_end;
   g0 = sign * (value(e0.rate[k]) - level), g1 = sign * (value(e1.rate[k]) - level);
   // a start behind the surface, within what counts as zero, is on it: docs/theory/events.md, rule 4
   const Real<T> shift = select(g0 < 0, smaller(-g0, 1e3 * noise), Real<T>(0));

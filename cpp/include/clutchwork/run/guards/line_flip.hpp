@@ -1,5 +1,5 @@
 #pragma once
-#include <clutchwork/motion/loads.hpp>
+#include <clutchwork/motion/mesh_loads.hpp>
 #include <clutchwork/run/event.hpp>
 #include <clutchwork/run/guards/torques.hpp>
 #include <clutchwork/run/hit.hpp>
@@ -26,14 +26,14 @@ struct LineFlip {
     Workspace<T>& ws = form.ws;
     for (int i = 0; i < ws.loads.n_sliding; ++i) {
       const int l = ws.loads.sliding[i], k = ws.loads.branch[i];
-      const double start = value(ws.here.clearance[l]), end = value(ws.there.clearance[l]);
-      if (is_ample(start, end, value(ws.here.closing[l]), value(ws.there.closing[l]), step.h)) continue;
+      const double start = value(ws.step_start.clearance[l]), end = value(ws.step_end.clearance[l]);
+      if (is_ample(start, end, value(ws.step_start.closing[l]), value(ws.step_end.closing[l]), step.h)) continue;
       fit(form, step);
       const double noise = 1e-12 * torque_size(ws);
       auto f = [&](double s) {
         torques_at(form, step, s);
         T by_load = T(0);
-        return noise + value(line_clearance(ws, l, ws.seen.rate[k], by_load));
+        return noise + value(line_clearance(ws, l, ws.observed.rate[k], by_load));
       };
       const double s = first_crossing(f, noise + start, noise + end, hit.s);
       hit.take(s, l);
@@ -44,7 +44,7 @@ struct LineFlip {
     Workspace<T>& ws = form.ws;
     see_torques(form, step, t, y);
     T by_load = T(0);
-    return line_clearance(ws, hit.index, ws.seen.rate[ws.branch_of[component(ws, hit)]], by_load);
+    return line_clearance(ws, hit.index, ws.observed.rate[ws.branch_of[component(ws, hit)]], by_load);
   }
   template <class Form, class T = typename Form::Scalar>
   static double scale(Form& form, const Hit&, const T*) {

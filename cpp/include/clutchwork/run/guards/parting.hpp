@@ -34,12 +34,12 @@ void find_parting_beside(Form& form, Step<Form>& step, Hit& hit) {
   auto& ws = form.ws;
   fit(form, step);
   for (int i = 0; i < ws.held.n_driven; ++i) {
-    const int spare = ws.held.driven[i], c = ws.held.spare[spare];
+    const int redundant = ws.held.driven[i], c = ws.held.redundant[redundant];
     const double end = abs(slip_beside(form, step, c, 1.0)), zero = ws.guard.zero;
     if (end <= zero) continue;
     auto f = [&](double s) { return zero - abs(slip_beside(form, step, c, s)); };
     const double s = first_crossing(f, zero, zero - end, hit.s);
-    hit.take(s, spare);
+    hit.take(s, redundant);
   }
 }
 
@@ -76,11 +76,11 @@ struct Parting : OwnScale {
   }
   template <class T>
   static int component(const Workspace<T>& ws, const Hit& hit) {
-    return int(ws.sys.elements) + ws.held.spare[hit.index];
+    return int(ws.sys.elements) + ws.held.redundant[hit.index];
   }
   template <class Phase>
   static void settle(Phase& phase, const Hit& hit) {
-    phase.decide(Cause::torque_limit, phase.ws().held.spare[hit.index]);
+    phase.decide(Cause::torque_limit, phase.ws().held.redundant[hit.index]);
   }
 };
 

@@ -22,14 +22,14 @@ template <class Form, class T = typename Form::Scalar>
   // round-off of a margin: a state at its limit has not passed it. docs/theory/events.md, rule 12
   constexpr double noise = 1e-12;
   const T still[most_ways] = {};
-  auto at_end = [&](double t, const T* y, const T* f, const Edge<T>& edge) {
+  auto at_end = [&](double t, const T* y, const T* f, const StepEnd<T>& edge) {
     inputs_of(form, t, y);
     rate_slopes(ws, [&](int j) { return edge.slope[j]; });
     const T *rate = k < 0 ? still : edge.rate + k, *slope = k < 0 ? still : edge.slope + k;
     return law_margin(ws, b, rate, slope, y + nz, f + nz, who);
   };
-  const auto start = at_end(step.t, step.y0(), step.f0(), ws.here);
-  const auto end = at_end(step.t + step.h, step.y1(), step.f1(), ws.there);
+  const auto start = at_end(step.t, step.y0(), step.f0(), ws.step_start);
+  const auto end = at_end(step.t + step.h, step.y1(), step.f1(), ws.step_end);
   if (is_ample(value(start.v), value(end.v), value(start.d[0]), value(end.d[0]), step.h)) return -1;
   fit(form, step);
   auto f = [&](double s) {

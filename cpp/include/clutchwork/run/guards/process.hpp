@@ -33,7 +33,7 @@ struct ProcessEnd : OwnScale, OfNone {
     for (int i = 0; i < ws.guard.n_processes; ++i) {
       const int c = ws.guard.process[i];
       int who = 0;
-      auto at_end = [&](double t, const T* y, const T* f, const Edge<T>& edge) {
+      auto at_end = [&](double t, const T* y, const T* f, const StepEnd<T>& edge) {
         auto rate = [&](int d, T& slope) {
           const int k = ws.branch_of[d];
           if (k < 0 || k >= ws.n_branches) return T(0);
@@ -41,8 +41,8 @@ struct ProcessEnd : OwnScale, OfNone {
         };
         return process_margin(ws, c, t, y + nz, f + nz, rate, who);
       };
-      const auto start = at_end(step.t, step.y0(), step.f0(), ws.here);
-      const auto end = at_end(step.t + step.h, step.y1(), step.f1(), ws.there);
+      const auto start = at_end(step.t, step.y0(), step.f0(), ws.step_start);
+      const auto end = at_end(step.t + step.h, step.y1(), step.f1(), ws.step_end);
       if (is_ample(value(start.v), value(end.v), value(start.d[0]), value(end.d[0]), step.h)) continue;
       fit(form, step);
       auto f = [&](double s) {

@@ -1,12 +1,12 @@
 #pragma once
 #include <clutchwork/contacts/locked.hpp>
 #include <clutchwork/contacts/sticking.hpp>
+#include <clutchwork/run/clamp_loads.hpp>
 #include <clutchwork/run/event.hpp>
 #include <clutchwork/run/guards/torque_limit.hpp>
 #include <clutchwork/run/guards/torques.hpp>
 #include <clutchwork/run/hit.hpp>
 #include <clutchwork/run/integrator/memory.hpp>
-#include <clutchwork/run/loads.hpp>
 #include <clutchwork/run/locate.hpp>
 #include <clutchwork/workspace.hpp>
 
@@ -22,10 +22,10 @@ template <class Form>
   fit(form, step);
   auto f = [&](double s) {
     torques_at(form, step, s);
-    return value(set_room(ws, k, ws.seen.carried, ws.here.noise[0], ws.loads.now));
+    return value(set_room(ws, k, ws.observed.carried, ws.step_start.noise[0], ws.loads.now));
   };
   if (!hit.bends && least >= ample - 1 && f(0.5) >= ample - 1) return;
-  const double s = first_dip(f, value(ws.here.room[k]), value(ws.there.room[k]), hit.s);
+  const double s = first_dip(f, value(ws.step_start.room[k]), value(ws.step_end.room[k]), hit.s);
   hit.take(s, k);
 }
 
@@ -43,8 +43,8 @@ struct SetLimit : OwnScale {
     using T = typename Form::Scalar;
     Workspace<T>& ws = form.ws;
     for (int k = 0; k < ws.held.n_sets; ++k) {
-      const double before = value(ws.here.room[k]), after = value(ws.there.room[k]);
-      const double coming = room_ahead(ws, k, ws.here, step.h), gone = room_ahead(ws, k, ws.there, -step.h);
+      const double before = value(ws.step_start.room[k]), after = value(ws.step_end.room[k]);
+      const double coming = room_ahead(ws, k, ws.step_start, step.h), gone = room_ahead(ws, k, ws.step_end, -step.h);
       const double change = larger(abs(after - before), larger(before - coming, after - gone));
       bool bends = false;
       if (ws.sys.loads > 0 && holds_loads(ws)) {
@@ -57,7 +57,7 @@ struct SetLimit : OwnScale {
       fit(form, step);
       auto f = [&](double s) {
         torques_at(form, step, s);
-        return value(set_room(ws, k, ws.seen.carried, ws.here.noise[0], ws.loads.now));
+        return value(set_room(ws, k, ws.observed.carried, ws.step_start.noise[0], ws.loads.now));
       };
       const double s = first_crossing(f, before, after, hit.s);
       hit.take(s, k);
@@ -66,7 +66,7 @@ struct SetLimit : OwnScale {
   template <class Form, class T = typename Form::Scalar>
   static T at(Form& form, Step<Form>& step, const Hit& hit, double t, const T* y, int&) {
     see_torques(form, step, t, y);
-    return set_room(form.ws, hit.index, form.ws.seen.carried, T(0), form.ws.loads.now);
+    return set_room(form.ws, hit.index, form.ws.observed.carried, T(0), form.ws.loads.now);
   }
   template <class T>
   static int component(const Workspace<T>& ws, const Hit& hit) {
@@ -79,10 +79,10 @@ struct SetLimit : OwnScale {
     auto& seen = phase.taken_form().ws;
     torques_at(phase.taken_form(), phase.taken_step(), larger(hit.s, 1e-6));
     if constexpr (has_tangents<T>) {
-      for (int a = 0; a < ws.held.n; ++a) ws.seen.carried[a] = T(seen.seen.carried[a]);
+      for (int a = 0; a < ws.held.n; ++a) ws.observed.carried[a] = T(seen.observed.carried[a]);
       for (int l = 0; l < ws.sys.loads; ++l) ws.loads.now[l] = T(seen.loads.now[l]);
     }
-    break_set(ws, hit.index, ws.seen.carried);
+    break_set(ws, hit.index, ws.observed.carried);
   }
   /// Freewheels at their own limit give way for good.
   template <class Phase>

@@ -3,10 +3,10 @@
 #include <clutchwork/components/input.hpp>
 #include <clutchwork/contacts/locked.hpp>
 #include <clutchwork/contacts/sticking.hpp>
+#include <clutchwork/run/clamp_loads.hpp>
 #include <clutchwork/run/guards/torques.hpp>
 #include <clutchwork/run/hit.hpp>
 #include <clutchwork/run/integrator/memory.hpp>
-#include <clutchwork/run/loads.hpp>
 #include <clutchwork/run/locate.hpp>
 #include <clutchwork/workspace.hpp>
 
@@ -16,7 +16,7 @@ namespace clutchwork {
 /// Whether a freewheel was hit at the torque at which it gives way, and not where its torque ends.
 template <class T>
 bool rolls_over(const Workspace<T>& ws, int c) {
-  return contact_one_way(ws, c) && value(freewheel_limit(ws, c)) < infinity && value(ws.happened.torque[c]) > 0;
+  return contact_one_way(ws, c) && value(freewheel_limit(ws, c)) < infinity && value(ws.event_context.torque[c]) > 0;
 }
 
 /// Smallest margin of the watched locked contacts at s, and whose it is.
@@ -53,8 +53,8 @@ double rigid_departure(Form& form, Step<Form>& step, int a, double limit) {
 /// ends. docs/theory/varying-ratios.md (22)
 template <class T>
 bool has_pole(const Workspace<T>& ws, int a) {
-  const double before = value(ws.here.multiplier[a]), after = value(ws.there.multiplier[a]);
-  return before * after < 0 && before * value(ws.here.drift[a]) > 0 && after * value(ws.there.drift[a]) < 0;
+  const double before = value(ws.step_start.multiplier[a]), after = value(ws.step_end.multiplier[a]);
+  return before * after < 0 && before * value(ws.step_start.drift[a]) > 0 && after * value(ws.step_end.drift[a]) < 0;
 }
 
 /// Where such a torque leaves what the contact holds, on its way to the pole; -1: not before `limit`.
@@ -66,7 +66,7 @@ template <class Form>
     torques_at(form, step, s);
     return margin_seen(ws, a);
   };
-  const double sign = value(ws.here.multiplier[a]);
+  const double sign = value(ws.step_start.multiplier[a]);
   double low = 0, above = larger(margin_at_start, 0.0), high = 1;
   for (int k = 0; k < halvings; ++k) {
     const double middle = 0.5 * (low + high), margin = f(middle);
@@ -74,7 +74,7 @@ template <class Form>
       const double s = locate(f, low, above, middle, margin);
       return s <= limit ? s : -1;
     }
-    if (sign * value(ws.seen.carried[a]) > 0)
+    if (sign * value(ws.observed.carried[a]) > 0)
       low = middle, above = margin;
     else
       high = middle;
@@ -125,8 +125,8 @@ struct TorqueLimit {
         hit.take(before_pole(form, step, a, before, hit.s), a);
       }
       watched[n++] = a;
-      m0 = smaller(m0, before + more_noise(ws, a, ws.here.capacity[a]));
-      m1 = smaller(m1, after + more_noise(ws, a, ws.there.capacity[a]));
+      m0 = smaller(m0, before + more_noise(ws, a, ws.step_start.capacity[a]));
+      m1 = smaller(m1, after + more_noise(ws, a, ws.step_end.capacity[a]));
     }
     if (n == 0) return;
     fit(form, step);
@@ -139,7 +139,7 @@ struct TorqueLimit {
     const int at_limit = who;
     for (int k = 12; k > 0 && beyond >= 0; --k) beyond = f(s + (hit.s - s) / (1 << k));
     torques_at(form, step, s);
-    if (margin_seen(ws, who) > 1e-6 * value(capacity_at(ws, ws.held.contact[who], ws.seen.carried[who])))
+    if (margin_seen(ws, who) > 1e-6 * value(capacity_at(ws, ws.held.contact[who], ws.observed.carried[who])))
       who = at_limit;
     // what round-off alone has kept from the start of the run is at the start
     const bool kept = ws.statistics.steps <= 1 && s * step.h <= 1e-14 * (1 + abs(step.t));
@@ -151,11 +151,11 @@ struct TorqueLimit {
     const int c = ws.held.contact[hit.index];
     if (is_rigid(ws, c)) return abs(rate_at(form, int(ws.sys.elements) + c, t, y));
     see_torques(form, step, t, y);
-    return distance_from_slip(ws, c, ws.seen.carried[hit.index]);
+    return distance_from_slip(ws, c, ws.observed.carried[hit.index]);
   }
   template <class Form, class T = typename Form::Scalar>
   static double scale(Form& form, const Hit& hit, const T*) {
-    return larger(abs(value(form.ws.seen.carried[hit.index])), 1e-3 * torque_size(form.ws));
+    return larger(abs(value(form.ws.observed.carried[hit.index])), 1e-3 * torque_size(form.ws));
   }
   template <class T>
   static int component(const Workspace<T>& ws, const Hit& hit) {
@@ -169,7 +169,7 @@ struct TorqueLimit {
     phase.decide(Cause::torque_limit, c);
     if (rolls_over(ws, c)) return fail(ws, c);
     if (is_rigid(ws, c)) return;
-    const double pull = hit.s > 0 ? value(ws.happened.torque[c]) : value(ws.there.multiplier[hit.index]);
+    const double pull = hit.s > 0 ? value(ws.event_context.torque[c]) : value(ws.step_end.multiplier[hit.index]);
     const int way = free_way(ws, c);
     ws.contact.forced[c] = way != 0 ? way : pull > 0 ? backward : forward;
   }

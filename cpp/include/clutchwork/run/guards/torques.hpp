@@ -13,7 +13,7 @@ namespace clutchwork {
 /// Margin of a locked contact: how much torque is left before it slips, round-off conceded.
 template <class T>
 CLUTCHWORK_INLINE Real<T> margin(const Workspace<T>& ws, int a, T torque, T capacity) {
-  capacity += ws.here.noise[a];
+  capacity += ws.step_start.noise[a];
   const int way = free_way(ws, ws.held.contact[a]);
   if (way == 0) return value(capacity) - abs(value(torque));
   if (way < 0) return value(capacity - torque);
@@ -23,7 +23,7 @@ CLUTCHWORK_INLINE Real<T> margin(const Workspace<T>& ws, int a, T torque, T capa
 /// Whether the margin of a locked contact exceeds what can change in a step of length h; its margins at both ends.
 template <class T>
 CLUTCHWORK_INLINE Truth<T> holds_on(const Workspace<T>& ws, int a, Real<T> h, Real<T>& before, Real<T>& after) {
-  const auto &e0 = ws.here, &e1 = ws.there;
+  const auto &e0 = ws.step_start, &e1 = ws.step_end;
   before = margin(ws, a, e0.multiplier[a], e0.capacity[a]);
   after = margin(ws, a, e1.multiplier[a], e1.capacity[a]);
   const Real<T> change = abs(value(e1.multiplier[a] - e0.multiplier[a])) + abs(value(e1.capacity[a] - e0.capacity[a]));
@@ -32,7 +32,7 @@ CLUTCHWORK_INLINE Truth<T> holds_on(const Workspace<T>& ws, int a, Real<T> h, Re
   return smaller(before, after) > larger(change, drift + swing);
 }
 
-/// Torques of the carriers at s, into ws.seen.carried.
+/// Torques of the independent contacts at s, into ws.observed.carried.
 template <class Form>
 void torques_at(Form& form, Step<Form>& step, double s) {
   auto& ws = form.ws;
@@ -41,7 +41,7 @@ void torques_at(Form& form, Step<Form>& step, double s) {
   inputs_at(ws, t);
   if (ws.sys.prescribed > 0) input_slopes_at(ws, t);
   observe(form, t, step.point(), step.slope());
-  multipliers(ws, ws.seen.torque, true, ws.seen.carried);
+  multipliers(ws, ws.observed.torque, true, ws.observed.carried);
   if (ws.sys.loads > 0) loads_seen(ws);
   ++ws.statistics.locations;
 }
@@ -50,25 +50,25 @@ void torques_at(Form& form, Step<Form>& step, double s) {
 /// start.
 template <class T>
 double more_noise(const Workspace<T>& ws, int a, T capacity) {
-  const double more = value(ws.there.noise[a] - ws.here.noise[a]);
+  const double more = value(ws.step_end.noise[a] - ws.step_start.noise[a]);
   return value(capacity) < more ? more : 0.0;
 }
 
 /// Margin of a locked contact where the torques were looked at last.
 template <class T>
 double margin_seen(const Workspace<T>& ws, int a) {
-  const T torque = ws.seen.carried[a], capacity = capacity_at(ws, ws.held.contact[a], torque);
+  const T torque = ws.observed.carried[a], capacity = capacity_at(ws, ws.held.contact[a], torque);
   return margin(ws, a, torque, capacity) + more_noise(ws, a, capacity);
 }
 
-/// Torques of the branches and the carriers at (t, y), into ws.seen.
+/// Torques of the branches and the independent contacts at (t, y), into ws.observed.
 template <class Form, class T = typename Form::Scalar>
 void see_torques(Form& form, Step<Form>& step, double t, const T* y) {
   Workspace<T>& ws = form.ws;
   inputs_of(form, t, y);
   if (ws.sys.prescribed > 0) input_slopes_at(ws, t);
   observe(form, t, y, step.slope());
-  multipliers(ws, ws.seen.torque, true, ws.seen.carried);
+  multipliers(ws, ws.observed.torque, true, ws.observed.carried);
   if (ws.sys.loads > 0) loads_seen(ws);
 }
 

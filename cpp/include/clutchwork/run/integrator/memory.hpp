@@ -27,7 +27,7 @@ struct StepCalls {
   using T = typename Form::Scalar;
   Real<T> (*advance)(Form& form, Step<Form>& step, Real<T> h);
   void (*fit)(Form& form, Step<Form>& step);
-  void (*look)(Form& form, Step<Form>& step, Real<T> t, const T* y, T* d, T* dt, Edge<T>& edge);
+  void (*linearize_at)(Form& form, Step<Form>& step, Real<T> t, const T* y, T* d, T* dt, StepEnd<T>& edge);
   void (*observe)(Form& form, Step<Form>& step, double s);
   bool stiff;      ///< made for stiff motion
   double restart;  ///< share of the step before an event with which it starts after it

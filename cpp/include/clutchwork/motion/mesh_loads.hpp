@@ -32,21 +32,21 @@ void prepare_loads(Workspace<T>& ws) {
     for (int i = 0; i < nv; ++i) ws.loads.momentum[l * nv + i] = momentum[i];
     for (int d = 0; d < ws.n_directions; ++d) {
       const T rate = T(d < ne ? sys.load_element_rate[l * ne + d] : sys.load_contact_rate[l * nc + d - ne]);
-      ws.loads.by_torque[l * ws.n_directions + d] = ws.geometry.white.times(d, momentum) - rate;
+      ws.loads.by_torque[l * ws.n_directions + d] = ws.geometry.mass_weighted.times(d, momentum) - rate;
     }
     for (int p = 0; p < np; ++p)
       ws.loads.by_slope[l * np + p] -= dot(nv, momentum, ws.geometry.prescribed_momentum + p * nv);
   }
 }
 
-/// The same in the present mode, by the torques of its branches: those of the carriers follow from them.
+/// The same in the present mode, by the torques of its branches: those of the independent contacts follow from them.
 /// docs/theory/load-dependent.md (7)
 template <class T>
 void map_loads(Workspace<T>& ws) {
   const auto& sys = ws.sys;
   const int nd = ws.n_directions, np = int(sys.prescribed), ne = int(sys.elements), nv = int(sys.speeds),
             m = ws.held.n_fixed;
-  const Compressed<T>& white = ws.geometry.white;
+  const Compressed<T>& mass_weighted = ws.geometry.mass_weighted;
   T *b = ws.held.rhs, *share = ws.held.solved;
   for (int l = 0; l < sys.loads; ++l) {
     const T* by_torque = ws.loads.by_torque + l * nd;
@@ -55,20 +55,20 @@ void map_loads(Workspace<T>& ws) {
     for (int k = 0; k < ws.n_branches; ++k) {
       const int d = ws.branch[k].direction;
       T s = by_torque[d];
-      for (int a = 0; a < m; ++a) s -= share[a] * product(white, ne + ws.held.contact[a], d);
+      for (int a = 0; a < m; ++a) s -= share[a] * product(mass_weighted, ne + ws.held.contact[a], d);
       ws.loads.by_branch[l * nd + k] = s;
     }
     for (int c = m; c < ws.held.n; ++c) {
       const int d = ne + ws.held.contact[c];
       T s = by_torque[d];
-      for (int a = 0; a < m; ++a) s -= share[a] * product(white, ne + ws.held.contact[a], d);
+      for (int a = 0; a < m; ++a) s -= share[a] * product(mass_weighted, ne + ws.held.contact[a], d);
       ws.loads.by_held[l * sys.contacts + c - m] = s;
     }
     for (int p = 0; p < np; ++p) {
       T s = ws.loads.by_slope[l * np + p];
       for (int a = 0; a < m; ++a) {
         const int d = ne + ws.held.contact[a];
-        s -= share[a] * (prescribed_share(ws, d, p) - white.times(d, ws.geometry.prescribed_momentum + p * nv));
+        s -= share[a] * (prescribed_share(ws, d, p) - mass_weighted.times(d, ws.geometry.prescribed_momentum + p * nv));
       }
       ws.loads.by_prescribed[l * np + p] = s;
     }
@@ -97,7 +97,7 @@ void loads_of(const Workspace<T>& ws, const T* torque, bool moving, T* out, Held
 /// The loads where torques were looked at last.
 template <class T>
 void loads_seen(Workspace<T>& ws) {
-  loads_of(ws, ws.seen.torque, true, ws.loads.now, [&](int c) { return ws.seen.carried[ws.held.n_fixed + c]; });
+  loads_of(ws, ws.observed.torque, true, ws.loads.now, [&](int c) { return ws.observed.carried[ws.held.n_fixed + c]; });
 }
 
 /// Whether the torques of the contacts that slip and follow loads answer what drives them the right way round where
@@ -118,7 +118,7 @@ bool is_balanced(const Workspace<T>& ws) {
 template <class T>
 double torque_size(const Workspace<T>& ws) {
   double size = 0;
-  for (int k = 0; k < ws.n_branches; ++k) size += abs(value(ws.seen.torque[k]));
+  for (int k = 0; k < ws.n_branches; ++k) size += abs(value(ws.observed.torque[k]));
   return size;
 }
 

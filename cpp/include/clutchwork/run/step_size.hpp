@@ -20,7 +20,7 @@ inline double rounded_step(double h) {
 
 /// Where a phase is between its steps.
 template <class T>
-struct Pace {
+struct StepSize {
   Workspace<T>& ws_;
   Sink& sink_;
   const double t_end_;
@@ -35,7 +35,7 @@ struct Pace {
   T* rows_ = nullptr;  ///< of the step: StepRow
   int width_ = 0;      ///< of each row
 
-  Pace(Workspace<T>& ws, double t_end, Sink& sink) : ws_(ws), sink_(sink), t_end_(t_end) {}
+  StepSize(Workspace<T>& ws, double t_end, Sink& sink) : ws_(ws), sink_(sink), t_end_(t_end) {}
 
   /// Numbers of one row of the step.
   T* row(int number) const { return rows_ + number * width_; }
