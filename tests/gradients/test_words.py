@@ -13,7 +13,7 @@ from clutchwork.assembly.changes import quick
 from clutchwork.assembly.masses import masses
 from clutchwork.base.errors import ModelError
 from clutchwork.declare.schema import Role
-from clutchwork.gradients.assembled import made, words_of
+from clutchwork.gradients.assembled import Assembled, made, words_of
 from clutchwork.gradients.parameters import changes, parameters
 from clutchwork.gradients.words import Words
 from clutchwork.model.changes import changed_model
@@ -227,3 +227,44 @@ def test_a_number_at_a_kink_of_the_assembly_is_refused():
     assert "b.tolerance = 0.001" in str(caught.value)
     # beside the kink one of both counts
     assert words.slopes_at(np.array([1e-3, 2e-3])).matrix[0] == pytest.approx([0.0, 1.0], abs=1e-12)
+
+
+def test_a_number_that_comes_to_a_kink_at_zero_is_refused_there():
+    d = cw.Driveline("step")
+    a = d.shaft("a", inertia=1.0)
+    d.add(cw.Torque("t", shaft=a, torque=cw.Step(height=10.0, start=0.5)))
+    system = d.assemble()
+    words = Words(system, parameters(system, "t.torque.start"))
+    assert np.count_nonzero(words.slopes_at(np.array([0.5])).matrix) == 1
+    # before 0 the step is there from the beginning
+    with pytest.raises(cw.NoGradient, match="kink"):
+        words.slopes_at(np.array([0.0]))
+
+
+def test_a_product_of_which_one_factor_is_zero_depends_on_both():
+    """The torque of a spring at the start is its stiffness times its twist, which is zero at first."""
+    d = cw.Driveline("spring")
+    a, b = d.shaft("a", inertia=1.0), d.shaft("b", inertia=2.0)
+    d.add(cw.SpringDamper("k", base=a, follower=b, stiffness=50.0, damping=1.0))
+    system = d.assemble()
+    chosen = parameters(system, ["k.stiffness", "k.initial_twist"])
+    words, x = Words(system, chosen), np.array([60.0, 0.1])
+    words.at(free_numbers.start(chosen))
+    found = words.slopes_at(x)
+    torque = np.flatnonzero(words_of(made(system, chosen, x)) == 6.0)
+    assert len(torque) == 1
+    np.testing.assert_allclose(found.of(torque), [[0.1, 60.0]], rtol=1e-11)
+    assert words.bytes_at(x) == made(system, chosen, x).to_bytes()
+
+
+def test_derivatives_by_inertias_are_those_of_differences_of_exact_sums():
+    """Shares of the mass matrix; differences of eighth order leave 1e-13 of them."""
+    system = six_speed.gearbox(six_speed.SHIFT).assemble()
+    chosen = parameters(system, [f"{name}.inertia" for name in six_speed.INERTIA])
+    words, x = Words(system, chosen), free_numbers.start(chosen)
+    chart, _ = words.at(x)
+    assert not chart.bound
+    whole = Assembled(system, chart.assembled.structure, chosen, x, tuple(range(len(x)))).slopes(x)
+    found = words.slopes_at(x)
+    np.testing.assert_allclose(found.matrix, whole[found.places], rtol=1e-12, atol=1e-12)
+    assert not whole[np.setdiff1d(np.arange(len(whole)), found.places)].any()

@@ -106,11 +106,11 @@ class System:
 
     def __getattr__(self, name: str) -> Array:
         own = self.__dict__
-        if name in LATER:
-            change = own.get(CHANGE)
-            found: Array = own[name] if change is None else self._later(name, *change)
-            return found
         try:
+            if name in LATER:
+                change = own.get(CHANGE)
+                found: Array = own[name] if change is None else self._later(name, *change)
+                return found
             arrays = own["arrays"]
             return dense(arrays, name) if name in SPARSE else arrays[name]
         except KeyError:

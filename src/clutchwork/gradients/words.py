@@ -68,6 +68,12 @@ class Chart:
         """Numbers that words are assembled from."""
         return self.assembled.numbers
 
+    @cached_property
+    def beside_tables(self) -> list[int]:
+        """Numbers that are in no table."""
+        inside = {number for table in self.tables for number in table.numbers.tolist()}
+        return [number for number in range(len(self.assembled.start)) if number not in inside]
+
     def words_in(self, name: str) -> tuple[int, int]:
         """The first word of an array of a System, and how many there are."""
         return self.assembled.system.starts[name] // 8, self.assembled.system.arrays[name].size
@@ -143,7 +149,7 @@ class Words:
 
     def _written(self, chart: Chart, x: Array) -> Array | None:
         """The words at a point: tables are written into those of the other numbers; None where there are others."""
-        rest = np.setdiff1d(np.arange(len(x)), [number for table in chart.tables for number in table.numbers])
+        rest = chart.beside_tables
         try:
             others = [self.parameters[number] for number in rest]
             words = words_of(made(self.system, others, x[rest]) if others else self.system)
