@@ -4,14 +4,16 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from copy import deepcopy
-from dataclasses import replace
+from dataclasses import fields, replace
 from functools import cache, partial
-from typing import TYPE_CHECKING, Any, NamedTuple
+from types import MappingProxyType
+from typing import TYPE_CHECKING, Any, NamedTuple, TypeVar
 
 from clutchwork.assembly.assemble import assembled
 from clutchwork.assembly.masses import masses
 from clutchwork.assembly.patches import Unpatched, changed_signals, patched, patches
-from clutchwork.base.errors import ModelError, Problem
+from clutchwork.assembly.system_data import GROUPS, LATER, MAKES, SystemData
+from clutchwork.base.errors import ModelError, Problem, warn
 from clutchwork.base.memoize import memoize
 from clutchwork.declare.node import Component, Node, Signal
 from clutchwork.declare.schema import specs
@@ -26,8 +28,9 @@ from clutchwork.model.temperatures import temperature_advice
 
 if TYPE_CHECKING:
     from clutchwork.assembly.records import Array
-    from clutchwork.assembly.system import System
     from clutchwork.base.errors import Problem as Found
+
+S = TypeVar("S", bound=SystemData)
 
 UNKNOWN_SOURCE = Problem(
     "system",
@@ -37,7 +40,41 @@ UNKNOWN_SOURCE = Problem(
 )
 
 
-def changed(
+def changed_system(system: S, changes: Mapping[str, Any]) -> S:
+    """A System with other values by name; ModelError where they do not fit."""
+    if system.source is None:
+        raise ModelError([UNKNOWN_SOURCE])
+    found = quick(system, changes)
+    # elements that are warned of are looked at as a whole
+    if found is not None and not (system.warnings and found.values):
+        return _with(system, found)
+    source, made, advice = anew(system.source, system.wanted, len(system.independent), changes)
+    for one in advice:
+        if str(one) not in system.warnings:
+            warn(one)
+    return type(system)(**made, settings=system.settings, source=source, wanted=system.wanted)
+
+
+def _with(system: S, found: Quick) -> S:
+    """The same structure with other numbers."""
+    # of changes of changes none waits for another
+    own = {item.name: getattr(system, item.name) for item in fields(system)}
+    vars(system).pop(MAKES, None)
+    data = bytearray(system.to_bytes())
+    for name, array in found.arrays.items():
+        if array is not system.arrays[name]:
+            array.flags.writeable = False
+            data[system.starts[name] : system.starts[name] + array.nbytes] = array.tobytes()
+    made, arrays = object.__new__(type(system)), MappingProxyType(found.arrays)
+    vars(made).update({name: value for name, value in own.items() if name not in LATER})
+    numbers = system.numbered._replace(arrays=arrays)
+    vars(made).update({"arrays": arrays, "numbered": numbers, MAKES: partial(found.made, system)})
+    # what follows from its structure alone
+    vars(made).update({"counts": system.counts, "starts": system.starts, "_bytes": bytes(data)})
+    return made
+
+
+def anew(
     source: Model, independent: Sequence[str], speeds: int, changes: Mapping[str, Any]
 ) -> tuple[Model, dict[str, Any], list[Found]]:
     """The model with other values, the fields of its System, and what is rarely wanted of it.
@@ -62,8 +99,6 @@ def changed(
     return model, made, found.advice
 
 
-# what holds the elements of a System
-GROUPS = ("elements", "contacts", "motions", "sensors", "flows", "processes")
 # values by the fields that lead to them
 Values = list[tuple[tuple[str, ...], Any]]
 
@@ -77,11 +112,13 @@ class Quick(NamedTuple):
     signals: dict[int, Signal]  # by the number of their input
     inertias: Mapping[str, float]  # of shafts and masses
 
-    def source(self, old: Model) -> Model:
-        """The driveline with them."""
-        return with_values(old, self.aims)
+    def made(self, old: SystemData, name: str) -> dict[str, Any]:
+        """What a System with them has of this name, and what comes with it."""
+        if name != "source":
+            return self.content(old)
+        return {"source": None if old.source is None else with_values(old.source, self.aims)}
 
-    def content(self, old: System) -> dict[str, Any]:
+    def content(self, old: SystemData) -> dict[str, Any]:
         """Everything of a System that holds them."""
         nodes = {id(node): replace(node, inertia=self.inertias[node.name]) for node in old.nodes if self._moves(node)}
         new = Renewed(nodes)
@@ -101,7 +138,7 @@ class Quick(NamedTuple):
         return new.of(own) if self.inertias else own
 
 
-def quick(system: System, changes: Mapping[str, Any]) -> Quick | None:
+def quick(system: SystemData, changes: Mapping[str, Any]) -> Quick | None:
     """The changes where they are such; None: everything must be looked at, and assembled, anew."""
     owners, where = owners_of(system), system.numbered
     given, aims, inertias = dict[str, tuple[Component, Values]](), list[tuple[Target, Any]](), dict[str, float]()
@@ -132,7 +169,7 @@ def quick(system: System, changes: Mapping[str, Any]) -> Quick | None:
 
 
 @memoize
-def owners_of(system: System) -> Owners:
+def owners_of(system: SystemData) -> Owners:
     """Everything of the driveline of a System that has something to change, by name."""
     return named(system.source or Model())
 

@@ -11,7 +11,7 @@ from clutchwork.declare.core import core
 from clutchwork.declare.node import Component, Work
 
 if TYPE_CHECKING:
-    from clutchwork.assembly.system import System
+    from clutchwork.assembly.system_data import SystemData
 
 
 class Stays(NamedTuple):
@@ -46,7 +46,7 @@ VARIANT = Stays("selects a variant, which stays so while a run goes on", NEW_RUN
 NOTHING = Stays("acts on nothing while a run goes on", NEW_RUN)
 
 
-def numbers(present: System, new: System) -> dict[int, float]:
+def numbers(present: SystemData, new: SystemData) -> dict[int, float]:
     """Parameters of the core that differ, by their places."""
     before, after = present.arrays["params"], new.arrays["params"]
     if before.shape != after.shape:
@@ -54,7 +54,7 @@ def numbers(present: System, new: System) -> dict[int, float]:
     return {int(place): float(after[place]) for place in np.flatnonzero(before != after)}
 
 
-def stays(base: System, present: System, new: System) -> Stays | None:
+def stays(base: SystemData, present: SystemData, new: SystemData) -> Stays | None:
     """Why a run cannot go on as another System; None where it can.
 
     Parameters: base, the System of the run; present, with what was changed so far; new, with all changes.
@@ -74,7 +74,7 @@ def stays(base: System, present: System, new: System) -> Stays | None:
 
 
 @memoize
-def _scratch(system: System) -> Any:
+def _scratch(system: SystemData) -> Any:
     """A run of the core that is asked which numbers it takes."""
     return core().Run(system.to_bytes())
 

@@ -21,7 +21,7 @@ from clutchwork.model.findings import findings
 from clutchwork.model.kinematics import order
 
 if TYPE_CHECKING:
-    from clutchwork.assembly.system import System
+    from clutchwork.assembly.system_data import SystemData
     from clutchwork.model.findings import Structure
     from clutchwork.model.model import Model
 
@@ -44,7 +44,7 @@ class Masses:
     matrix: Mapping[Word, Fraction]
 
     @classmethod
-    def of(cls, system: System, source: Model) -> Masses | None:
+    def of(cls, system: SystemData, source: Model) -> Masses | None:
         """Those of a System; None where more follows from them, as the weight of a vehicle, or other speeds."""
         found = findings(source).structure
         if found is None or any(map(_judges, source.elements)):
@@ -63,7 +63,7 @@ class Masses:
         masses = cls(inertia, known, wanted, shares, matrix)
         return masses if masses._is_all(system, source) else None
 
-    def _is_all(self, system: System, source: Model) -> bool:
+    def _is_all(self, system: SystemData, source: Model) -> bool:
         """Whether nothing else changes, seen by moving all."""
         rank = {place: number / len(self._order) for number, place in enumerate(self._order)}
         share = {name: 1.0 + PROBE * (1.0 + rank[place]) for name, place in self.places.items()}
@@ -120,7 +120,7 @@ def _judges(element: Component) -> bool:
     return kind.problems is not Component.problems and not kind.__module__.startswith("clutchwork.")
 
 
-def _shares(system: System, found: Structure) -> list[dict[Word, Fraction]]:
+def _shares(system: SystemData, found: Structure) -> list[dict[Word, Fraction]]:
     """Derivatives of the words of the mass matrix by each inertia; a place below 0: the matrix has no such word."""
     made, _, _ = chosen(found, system.wanted)
     columns = SpeedColumns(found.mechanism, made)
@@ -147,7 +147,7 @@ def is_mass(name: str) -> bool:
 
 
 @memoize
-def masses(system: System) -> Masses | None:
+def masses(system: SystemData) -> Masses | None:
     """Those of a System, found once."""
     try:
         return None if system.source is None else Masses.of(system, system.source)

@@ -18,7 +18,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
-from clutchwork.assembly.changes import UNKNOWN_SOURCE, owners_of
+from clutchwork.assembly.changes import UNKNOWN_SOURCE, changed_system, owners_of
 from clutchwork.assembly.during_runs import NOTHING, OTHER, SIGNAL, Stays, stays
 from clutchwork.assembly.inputs import plain_signal
 from clutchwork.assembly.masses import is_mass, masses
@@ -30,7 +30,7 @@ from clutchwork.model.changes import SIGNALS, Target, all_names, field_of, renew
 from clutchwork.signals.table import Table
 
 if TYPE_CHECKING:
-    from clutchwork.assembly.system import System
+    from clutchwork.assembly.system_data import SystemData
     from clutchwork.declare.schema import Spec
 
 Places = NDArray[np.int64]
@@ -57,8 +57,8 @@ class SystemParameter:
     is_word: bool  # each of these is the number itself
     inputs: tuple[int, ...]  # numbers of the signals that it is, or is inside of
     _spec: Spec
-    _system: System
-    _beside: System | None
+    _system: SystemData
+    _beside: SystemData | None
 
     @property
     def is_signal(self) -> bool:
@@ -112,7 +112,7 @@ class SystemParameter:
 class SystemParameters(Mapping[str, SystemParameter]):
     """Everything of a System that may be changed, by name; each is looked at when it is first asked for."""
 
-    def __init__(self, system: System) -> None:
+    def __init__(self, system: SystemData) -> None:
         if system.source is None:
             raise ModelError([UNKNOWN_SOURCE])
         self._system, self._source = system, system.source
@@ -133,7 +133,7 @@ class SystemParameters(Mapping[str, SystemParameter]):
 
 
 @memoize
-def parameter(system: System, name: str) -> SystemParameter:
+def parameter(system: SystemData, name: str) -> SystemParameter:
     """One of them; its name must be known."""
     aim: Any = target(owners_of(system), name)
     value, spec = field_of(aim)
@@ -161,7 +161,7 @@ def bounds_of(*found: Spec) -> tuple[float, float]:
     return max(lower, default=-inf), min(upper, default=inf)
 
 
-def differing(one: System, other: System) -> Reach | None:
+def differing(one: SystemData, other: SystemData) -> Reach | None:
     """Places in which the arrays of two Systems differ in any bit; None where they are of different sizes."""
     found = dict[str, Places]()
     for name, array in one.arrays.items():
@@ -174,13 +174,13 @@ def differing(one: System, other: System) -> Reach | None:
     return found
 
 
-def _changed(system: System, name: str, value: Any) -> System | None:
+def _changed(system: SystemData, name: str, value: Any) -> SystemData | None:
     """The System with another value; None where that is refused."""
     with warnings.catch_warnings():
         # what is rarely wanted was said of the driveline
         warnings.simplefilter("ignore", ModelWarning)
         try:
-            return system.changed({name: value})
+            return changed_system(system, {name: value})
         except ModelError:
             return None
 
@@ -216,7 +216,7 @@ def _scaled(row: Any, factor: float) -> Any:
     return [one * factor for one in row] if hasattr(row, "__len__") else row * factor
 
 
-def _is_value(made: System, differs: Reach | None, reach: Reach, value: float) -> bool:
+def _is_value(made: SystemData, differs: Reach | None, reach: Reach, value: float) -> bool:
     """Whether a value itself is at all places, and nothing differs elsewhere."""
     if differs is None or not differs.keys() <= reach.keys():
         return False
@@ -225,11 +225,11 @@ def _is_value(made: System, differs: Reach | None, reach: Reach, value: float) -
     return inside and all(map(partial(_is_real, made), reach)) and all(np.all(own == value) for own in words)
 
 
-def _is_real(system: System, array: str) -> bool:
+def _is_real(system: SystemData, array: str) -> bool:
     return bool(system.arrays[array].dtype.kind == "f")
 
 
-def _inputs(system: System, made: System, aim: Target, value: Any) -> tuple[int, ...]:
+def _inputs(system: SystemData, made: SystemData, aim: Target, value: Any) -> tuple[int, ...]:
     """Numbers of the signals that something is, or is inside of."""
     signal = _signal_with(aim, value)
     both = enumerate(zip(system.inputs, made.inputs, strict=True)) if signal is not None else ()

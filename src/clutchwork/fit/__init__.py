@@ -18,6 +18,8 @@ from typing import TYPE_CHECKING, Any
 from clutchwork.base.errors import near
 
 if TYPE_CHECKING:
+    from clutchwork.fit.estimates import Parameter as Parameter
+    from clutchwork.fit.estimates import UndeterminedError as UndeterminedError
     from clutchwork.fit.failure import FitError as FitError
     from clutchwork.fit.law import fit_csv as fit_csv
     from clutchwork.fit.law import fit_law as fit_law
@@ -26,17 +28,15 @@ if TYPE_CHECKING:
     from clutchwork.fit.response import fit_response as fit_response
     from clutchwork.fit.response_result import ResponseFit as ResponseFit
     from clutchwork.fit.result import FitResult as FitResult
-    from clutchwork.fit.result import Parameter as Parameter
-    from clutchwork.fit.result import UndeterminedError as UndeterminedError
 
 # names that are loaded when they are first used, with their module: the command line imports this package to ask less
 _LAZY = {
     "FitError": "failure",
     "FitResult": "result",
-    "Parameter": "result",
+    "Parameter": "estimates",
     "Record": "record",
     "ResponseFit": "response_result",
-    "UndeterminedError": "result",
+    "UndeterminedError": "estimates",
     "fit_csv": "law",
     "fit_law": "law",
     "fit_records": "records",

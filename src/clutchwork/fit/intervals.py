@@ -13,9 +13,9 @@ from numpy.typing import NDArray
 
 from clutchwork.base.classes import dataclass
 from clutchwork.fit import reasons
+from clutchwork.fit.estimates import Parameter
 from clutchwork.fit.failure import scipy
 from clutchwork.fit.information import FLOOR, Information, information
-from clutchwork.fit.result import Parameter
 
 if TYPE_CHECKING:
     from clutchwork.fit.engine import LeastSquares, Signals

@@ -14,6 +14,7 @@ from clutchwork.declare.node import Law as LawBase
 from clutchwork.fit import table
 from clutchwork.fit.adjustable import faults
 from clutchwork.fit.engine import Solution
+from clutchwork.fit.estimates import Parameter
 from clutchwork.fit.experiment import advice
 from clutchwork.fit.failure import FitError, described_by_nothing
 from clutchwork.fit.intervals import Estimate, estimate
@@ -24,7 +25,7 @@ from clutchwork.fit.model import model_of
 from clutchwork.fit.ordinates import check_inside
 from clutchwork.fit.profile_intervals import widened
 from clutchwork.fit.readings import likely, of_units
-from clutchwork.fit.result import FitResult, Parameter
+from clutchwork.fit.result import FitResult
 from clutchwork.fit.search import TORQUE, Residuals
 from clutchwork.fit.sliding import Sliding, noisy
 from clutchwork.fit.temperature import at_temperature

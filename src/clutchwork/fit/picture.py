@@ -16,13 +16,13 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
-    from clutchwork.fit.result import FitResult
+    from clutchwork.fit.fitted_law import FittedLaw
 
 MEASURED, FITTED, BOUND = COLOURS[0], COLOURS[1], COLOURS[7]
 HEIGHT = 135.0  # mm
 
 
-def picture(result: FitResult, path: str | Path | None = None) -> Figure:
+def picture(result: FittedLaw, path: str | Path | None = None) -> Figure:
     """Torque over time and slip, residuals over slip and their distribution; written to `path` when given."""
     with figure_of(HEIGHT) as figure:
         grid = figure.add_gridspec(3, 2, height_ratios=[1.0, 1.0, 0.8])
@@ -38,7 +38,7 @@ def picture(result: FitResult, path: str | Path | None = None) -> Figure:
     return figure
 
 
-def over_time(axes: Axes, result: FitResult) -> None:
+def over_time(axes: Axes, result: FittedLaw) -> None:
     """Measured samples as points, the fitted law as a line."""
     samples = result.samples
     axes.plot(samples.time, samples.torque, ".", color=MEASURED, markersize=2.5, label="measured")
@@ -49,7 +49,7 @@ def over_time(axes: Axes, result: FitResult) -> None:
     _legend(axes)
 
 
-def over_slip(axes: Axes, result: FitResult) -> None:
+def over_slip(axes: Axes, result: FittedLaw) -> None:
     """Torque over slip; samples at rest, which give only a bound, in grey."""
     samples, counts = result.samples, result.equations
     axes.plot(samples.slip[counts], samples.torque[counts], ".", color=MEASURED, markersize=2.5, label="measured")
@@ -64,7 +64,7 @@ def over_slip(axes: Axes, result: FitResult) -> None:
     _legend(axes)
 
 
-def residuals(axes: Axes, result: FitResult) -> None:
+def residuals(axes: Axes, result: FittedLaw) -> None:
     """What is left over, which should have no shape."""
     counts = result.equations
     axes.axhline(0.0, color="#B0B0B0", linewidth=0.6)
@@ -74,7 +74,7 @@ def residuals(axes: Axes, result: FitResult) -> None:
     axes.set_ylabel(f"residual, {_units(result)[1]}")
 
 
-def distribution(axes: Axes, result: FitResult) -> None:
+def distribution(axes: Axes, result: FittedLaw) -> None:
     """Histogram of the residuals beside the normal distribution of the same width."""
     left = result.residuals[result.equations]
     axes.hist(left, bins=min(40, 5 + len(left) // 10), density=True, color=MEASURED, alpha=0.5)
@@ -94,5 +94,5 @@ def _legend(axes: Axes) -> None:
     axes.legend(loc="lower right", bbox_to_anchor=(1.0, 0.98), ncols=3, borderaxespad=0.0, handletextpad=0.2)
 
 
-def _units(result: FitResult) -> tuple[str, str]:
+def _units(result: FittedLaw) -> tuple[str, str]:
     return ("m/s", "N") if result.samples.translation else ("rad/s", "N m")

@@ -9,9 +9,9 @@ from math import pi
 import numpy as np
 from numpy.typing import NDArray
 
+from clutchwork.fit.estimates import Parameter
 from clutchwork.fit.failure import FitError
 from clutchwork.fit.measurement import Measurement, measurement
-from clutchwork.fit.result import Parameter
 
 Array = NDArray[np.float64]
 

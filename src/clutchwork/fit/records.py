@@ -17,13 +17,14 @@ from clutchwork.fit.descent import Descent
 from clutchwork.fit.driven import Driven, driven
 from clutchwork.fit.engine import Solution
 from clutchwork.fit.failure import FitError, described_by_nothing, refuse
+from clutchwork.fit.fitted_record import FittedRecord
 from clutchwork.fit.intervals import estimate
 from clutchwork.fit.losses import WIDTH, Penalty
 from clutchwork.fit.misfit import is_worse, patterns
 from clutchwork.fit.numbers import Numbers, numbers
 from clutchwork.fit.record import Record
 from clutchwork.fit.record_readings import readings
-from clutchwork.fit.response_result import Followed, ResponseFit
+from clutchwork.fit.response_result import ResponseFit
 from clutchwork.fit.traces import label
 from clutchwork.gradients.parameters import changes, parameters
 
@@ -145,12 +146,12 @@ def _changes(record: Driven, names: Sequence[str], values: Array) -> dict[str, o
     return changes(record.system, parameters(record.system, names), values) if len(names) else {}
 
 
-def _followed(record: Driven, searched: Numbers, values: Array) -> Followed:
+def _followed(record: Driven, searched: Numbers, values: Array) -> FittedRecord:
     made = _changes(record, searched.by, values)
-    return Followed(record.label, record.traces, record.run(made), made)
+    return FittedRecord(record.label, record.traces, record.run(made), made)
 
 
-def _rms(records: Sequence[Followed]) -> dict[str, float]:
+def _rms(records: Sequence[FittedRecord]) -> dict[str, float]:
     rows = dict[str, list[Array]]()
     for record in records:
         for one in record.traces:

@@ -15,7 +15,7 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
-    from clutchwork.fit.response_result import Followed
+    from clutchwork.fit.fitted_record import FittedRecord
     from clutchwork.fit.traces import Trace
 
 MEASURED, FITTED = COLOURS[0], COLOURS[1]
@@ -24,7 +24,7 @@ HEIGHT, LEAST = 45.0, 60.0  # mm, of a row and of all
 MOST_BESIDE = 4
 
 
-def picture(records: Sequence[Followed], path: str | Path | None = None) -> Figure:
+def picture(records: Sequence[FittedRecord], path: str | Path | None = None) -> Figure:
     """A row for each signal, a column for each record, further ones below; written to `path` when given."""
     beside = min(len(records), MOST_BESIDE)
     blocks = [records[first : first + beside] for first in range(0, len(records), beside)]
@@ -43,11 +43,11 @@ def picture(records: Sequence[Followed], path: str | Path | None = None) -> Figu
     return figure
 
 
-def _signals(records: Sequence[Followed]) -> list[str]:
+def _signals(records: Sequence[FittedRecord]) -> list[str]:
     return list(dict.fromkeys(one.signal for record in records for one in record.traces))
 
 
-def _panel(axes: Axes, record: Followed, one: Trace) -> None:
+def _panel(axes: Axes, record: FittedRecord, one: Trace) -> None:
     """Measured samples as points, the fitted run as a line."""
     axes.plot(one.times, one.values, ".", color=MEASURED, markersize=2.5, label="measured")
     axes.plot(one.times, one.values + record.residuals(one), color=FITTED, linewidth=0.9, label="fitted")

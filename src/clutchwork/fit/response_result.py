@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import field
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -12,9 +11,9 @@ from numpy.typing import NDArray
 
 from clutchwork.base.classes import dataclass
 from clutchwork.base.plural import counted
+from clutchwork.fit.estimates import ParameterEstimates
+from clutchwork.fit.fitted_record import FittedRecord
 from clutchwork.fit.response_picture import picture
-from clutchwork.fit.result import ParameterEstimates
-from clutchwork.fit.traces import Trace
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -24,27 +23,12 @@ if TYPE_CHECKING:
 Array = NDArray[np.float64]
 
 
-@dataclass(frozen=True, eq=False)
-class Followed:
-    """A record and the run that was fitted to it."""
-
-    label: str
-    traces: tuple[Trace, ...] = field(repr=False)  # what was measured
-    run: Trajectory = field(repr=False)  # with the fitted values, at the instants of the samples
-    values: Mapping[str, Any]  # fitted, also those of this record alone, as `System.changed` takes them
-
-    def residuals(self, one: Trace) -> Array:
-        """Run minus samples of a measured signal."""
-        places = np.searchsorted(self.run.time, one.times)
-        return np.asarray(self.run[one.signal][places] - one.values)
-
-
 @dataclass(frozen=True, eq=False, kw_only=True)
 class ResponseFit(ParameterEstimates):
     """Fitted numbers of a driveline with their intervals, and how well its runs describe the samples."""
 
     values: Mapping[str, Any]  # fitted values of all records by name, as `System.changed` takes them
-    records: tuple[Followed, ...]
+    records: tuple[FittedRecord, ...]
     rms: Mapping[str, float]  # of the residuals, by signal, in its unit
     alike: Mapping[str, float]  # correlation of neighbouring residuals by signal, where it is not chance
 
