@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+import json
 from dataclasses import replace
 from functools import cache
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -41,27 +43,21 @@ def test_every_kind_is_drawn(kind: str) -> None:
     pytest.fail(f"{kind} is never drawn: give it an example in its declaration, or a line in RECIPES")
 
 
-# seeds that fail for a cause that is known and not mended, by what it is
-OPEN: dict[str, set[int]] = {
-    "two cams that drive one another beyond a dead point": {1142},
-    "a row behind a jam at a dead point, where another event falls into the step of the jam": {320499},
-    "a lag that begins with a speed, of a start that is later": {70044},
-}
+# random seeds that fail so: two cams drive one another beyond a dead point
+LEFT_OUT = {1142}
 
 
-def faults(seed: int, depth: int) -> str:
-    """What is wrong with the model of a seed: its rows, or all."""
-    if any(seed in seeds for seeds in OPEN.values()):
-        return ""
-    return "; ".join(f"{fault.key}: {fault.words}" for fault in judge.faults(model.model(seed), seed, depth))
+def faults(made: Plain, seed: int, depth: int) -> str:
+    """What is wrong with a model: its rows, or all."""
+    return "; ".join(f"{fault.key}: {fault.words}" for fault in judge.faults(made, seed, depth))
 
 
 def rows_of(seed: int) -> str:
-    return faults(seed, 0)
+    return faults(model.model(seed), seed, 0)
 
 
 def all_of(seed: int) -> str:
-    return faults(seed, 2)
+    return "" if seed in LEFT_OUT else faults(model.model(seed), seed, 2)
 
 
 @pytest.mark.random
@@ -86,7 +82,22 @@ def test_twins_of_more_random_models() -> None:
     sweep(all_of, range(1024, 1024 + amount(120)))
 
 
-# seeds of campaigns whose rows were wrong once, by what it was
+# models of campaigns as they were drawn: a new element, or another order of fields, makes a seed another model
+KEPT: dict[str, Plain] = json.loads(Path(__file__).with_name("kept_models.json").read_text(encoding="utf-8"))
+# those that fail for a cause that is known and not mended, by what it is
+OPEN = {
+    "a row behind a jam at a dead point, where another event falls into the step of the jam": 320499,
+    "a lag that begins with a speed, of a start that is later": 70044,
+}
+
+
+@pytest.mark.parametrize("seed", OPEN.values(), ids=list(OPEN))
+@pytest.mark.xfail(strict=True)
+def test_models_that_fail(seed: int) -> None:
+    assert not faults(KEPT[str(seed)], seed, 2)
+
+
+# those whose rows were wrong once, by what it was
 MENDED: dict[str, list[int]] = {
     "shares that did not turn with a ratio": [50171, 60233],
     "a jam of a gear that slips on": [60047, 60450],
@@ -124,7 +135,7 @@ MENDED: dict[str, list[int]] = {
 
 @pytest.mark.parametrize("seed", [seed for seeds in MENDED.values() for seed in seeds])
 def test_models_that_failed_once(seed: int) -> None:
-    assert not rows_of(seed)
+    assert not faults(KEPT[str(seed)], seed, 0)
 
 
 # the same of what agrees with them, by the kind of fault that is looked for
@@ -138,12 +149,12 @@ MENDED_BESIDE: dict[tuple[str, str], list[int]] = {
     ("only", "seed"), [(only, seed) for (_, only), seeds in MENDED_BESIDE.items() for seed in seeds]
 )
 def test_what_disagreed_with_models_once(only: str, seed: int) -> None:
-    assert not [fault.words for fault in judge.faults(model.model(seed), seed, 1, only)]
+    assert not [fault.words for fault in judge.faults(KEPT[str(seed)], seed, 1, only)]
 
 
 def test_a_jam_beside_a_light_shaft_has_its_own_sentence() -> None:
     """A ratio of zero leaves the speed of a light shaft to nothing; other words, or another part, are wrong."""
-    made = model.model(50079)
+    made = KEPT["50079"]
     run = agree.run(made)
     assert run.status == "jammed"
     assert not judge.ending(made, run)
@@ -214,7 +225,7 @@ def test_a_wrong_state_is_seen() -> None:
 
 def test_what_jams_beside_a_dead_point_is_there() -> None:
     """A cam may jam at a dead point; one whose last row is elsewhere may not."""
-    made = model.model(60197)
+    made = KEPT["60197"]
     run = agree.run(made)
     assert run.status == "unbalanced"
     assert not judge.ending(made, run)
