@@ -15,12 +15,12 @@ from clutchwork.assembly.patches import Unpatched, changed_signals, patched, pat
 from clutchwork.assembly.system_data import GROUPS, LATER, MAKES, SystemData
 from clutchwork.base.errors import ModelError, Problem, warn
 from clutchwork.base.memoize import memoize
-from clutchwork.declare.node import Component, Node, Signal
+from clutchwork.declare.node import Component, Law, Node, Signal
 from clutchwork.declare.schema import specs
 from clutchwork.declare.wording import words_of_files
 from clutchwork.model.changes import Owners, Renewed, Target, changed_model, named, renewed, target, with_values
 from clutchwork.model.components import component_advice, component_problems
-from clutchwork.model.fields import BROKEN, At, value_problems
+from clutchwork.model.fields import BROKEN, At, law_problems, value_problems
 from clutchwork.model.findings import findings
 from clutchwork.model.model import Model
 from clutchwork.model.problems import TOO_FAR_APART
@@ -216,6 +216,30 @@ def is_right(old: Component, new: Component) -> bool:
     if _plain_numbers(type(new)).issuperset((name,) for name, value in unlike.items() if value is not before.get(name)):
         return True
     return not any(component_advice(new)) and not any(temperature_advice([new], []))
+
+
+# what an element may say of its values together, and of what is made of them
+RULES = ("problems", "law_problems", "entries", "parts", "initial_states", "state_scales")
+
+
+def ruled(owner: Component, paths: Sequence[tuple[str, ...]]) -> Component | Law | None:
+    """What is to be looked at where numbers of an element are others within their bounds: itself, its law, or nothing.
+
+    Parameters: paths, of the fields that lead to the numbers.
+    """
+    law, own = owner.friction, _plain_numbers(type(owner))
+    known = own | {("friction", *path) for path in (_plain_numbers(type(law)) if isinstance(law, Law) else ())}
+    if not known.issuperset(paths) or any(getattr(type(owner), rule) is not getattr(Component, rule) for rule in RULES):
+        return owner
+    return None if own.issuperset(paths) else law
+
+
+def is_right_law(law: Law) -> bool:
+    """Whether there is no mistake in a law whose values are within their bounds, and no advice about it."""
+    try:
+        return not any(law_problems(law, At("", ""), sound=True)) and not any(law.advice())
+    except ArithmeticError:
+        return False
 
 
 @cache

@@ -8,18 +8,21 @@ from __future__ import annotations
 from bisect import bisect_left
 from collections.abc import Sequence
 from contextlib import suppress
-from dataclasses import field
+from dataclasses import field, replace
 from functools import cached_property
 from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
+from clutchwork.assembly.changes import is_right, is_right_law, owners_of, ruled
 from clutchwork.assembly.provenance import PROBES, SystemParameter, parameter
 from clutchwork.base.classes import dataclass
 from clutchwork.base.errors import ModelError
+from clutchwork.declare.node import Component, Law
 from clutchwork.gradients.assembled import Assembled, WordStructure, made, words_of
 from clutchwork.gradients.tables import TableWords
+from clutchwork.model.changes import renewed, target
 
 if TYPE_CHECKING:
     from clutchwork.assembly.system import System
@@ -27,6 +30,9 @@ if TYPE_CHECKING:
 
 Array = NDArray[np.float64]
 Places = NDArray[np.int64]
+
+# an element or a law, and its numbers by the fields that lead to them
+Rule = tuple[Component | Law, list[tuple[tuple[str, ...], int]]]
 
 # structures of a driveline that are remembered
 MOST_CHARTS = 8
@@ -60,6 +66,7 @@ class Chart:
     """How the words of one structure of a driveline follow from numbers."""
 
     fixed: dict[int, SystemParameter]  # numbers that words are, or are sums of: derivatives are the same everywhere
+    written: dict[int, Places]  # those of them that are words, which need not be assembled
     tables: tuple[TableWords, ...]
     assembled: Assembled  # all others
 
@@ -69,9 +76,9 @@ class Chart:
         return self.assembled.numbers
 
     @cached_property
-    def beside_tables(self) -> list[int]:
-        """Numbers that are in no table."""
-        inside = {number for table in self.tables for number in table.numbers.tolist()}
+    def beside(self) -> list[int]:
+        """Numbers that are neither words nor in a table."""
+        inside = {*self.written, *(number for table in self.tables for number in table.numbers.tolist())}
         return [number for number in range(len(self.assembled.start)) if number not in inside]
 
     def words_in(self, name: str) -> tuple[int, int]:
@@ -82,7 +89,7 @@ class Chart:
     def of(cls, system: System, parameters: tuple[Tunable, ...], x: Array) -> Chart:
         """Look at how the words of a System, which has these values, follow from them."""
         structure = WordStructure.of(system)
-        known = _known(system, structure, parameters, x)
+        known, there = _known(system, structure, parameters, x)
         fixed, tables = dict[int, SystemParameter](), list[TableWords]()
         for name, own in known.items():
             free = [(number, one) for number, one in enumerate(parameters) if one.field == name]
@@ -97,13 +104,47 @@ class Chart:
                 tables += [found] if found else []
         used = {*fixed, *(number for table in tables for number in table.numbers.tolist())}
         rest = tuple(number for number in range(len(x)) if number not in used)
-        return cls(fixed, tuple(tables), Assembled(system, structure, parameters, x, rest))
+        made_of = Assembled(system, structure, parameters, x, rest)
+        whole = cls(fixed, {number: one.words for number, one in fixed.items() if one.is_word}, tuple(tables), made_of)
+        # numbers that fit together alone are assembled
+        return whole if there is None or whole.gives(*there) else replace(whole, written={})
 
-    def holds(self, words: Array, x: Array) -> bool:
-        """Whether the words at a point are of this structure, and follow alike: at zero a number may be at a kink."""
-        zeros = ((one == 0.0)[list(self.fixed)] for one in (x, self.assembled.start))
-        alike = np.array_equal(*zeros) and self.assembled.structure.is_that_of(words)
+    def gives(self, system: System, x: Array) -> bool:
+        """Whether the words at a point are those of its System."""
+        words = self.words(x)
+        return words is not None and words.tobytes() == system.to_bytes()
+
+    def words(self, x: Array) -> Array | None:
+        """The words at a point; None where the structure is another one there."""
+        rest, known = self.beside, self.assembled
+        try:
+            others = [known.parameters[number] for number in rest]
+            words = words_of(made(known.system, others, x[rest])) if others else known.structure.words
+        except ModelError:
+            return None
+        if not self.holds(words if others else None, x):
+            return None
+        words = words.copy()
+        for number, places in self.written.items():
+            words[places] = x[number]
+        for table in self.tables:
+            table.write(words, x)
+        return words
+
+    def holds(self, words: Array | None, x: Array) -> bool:
+        """Whether the words at a point are of this structure, and follow alike: at zero a number may be at a kink.
+
+        Parameters: words, None where none were assembled.
+        """
+        changed = (x == 0.0) != self._zeros
+        alike = not (changed.any() and changed[list(self.fixed)].any())
+        alike = alike and (words is None or self.assembled.structure.is_that_of(words))
         return alike and all(table.holds(x) for table in self.tables)
+
+    @cached_property
+    def _zeros(self) -> NDArray[np.bool_]:
+        found: NDArray[np.bool_] = self.assembled.start == 0.0
+        return found
 
     def slopes(self, x: Array) -> Slopes:
         """Derivatives of the words at a point; NoGradient where there is none."""
@@ -138,8 +179,9 @@ class Words:
 
     def at(self, x: Array) -> tuple[Chart, Array]:
         """The words at a point, and how they follow from it; ModelError for values that the driveline refuses."""
+        self._check(x)
         for chart in self._charts:
-            words = self._written(chart, x)
+            words = chart.words(x)
             if words is not None:
                 return chart, words
         system = self.assembled(x)
@@ -147,20 +189,27 @@ class Words:
         self._charts[:] = [chart, *self._charts[: MOST_CHARTS - 1]]
         return chart, words_of(system)
 
-    def _written(self, chart: Chart, x: Array) -> Array | None:
-        """The words at a point: tables are written into those of the other numbers; None where there are others."""
-        rest = chart.beside_tables
-        try:
-            others = [self.parameters[number] for number in rest]
-            words = words_of(made(self.system, others, x[rest]) if others else self.system)
-        except ModelError:
-            return None
-        if not chart.holds(words, x) or np.any(x < self._bounds[0]) or np.any(x > self._bounds[1]):
-            return None
-        words = words.copy() if chart.tables else words
-        for table in chart.tables:
-            table.write(words, x)
-        return words
+    def _check(self, x: Array) -> None:
+        """Refuse what a driveline with these values refuses, in its words."""
+        lower, upper = self._bounds
+        if (x < lower).any() or (x > upper).any() or not all(_fits(x, *rule) for rule in self._rules):
+            self.assembled(x)
+
+    @cached_property
+    def _rules(self) -> list[Rule]:
+        """Elements and laws with numbers between which there may be rules, as between two coefficients."""
+        owners, known = owners_of(self.system), dict[str, tuple[Component, dict[tuple[str, ...], int]]]()
+        for number, one in enumerate(self.parameters):
+            aim = target(owners, one.field)
+            if aim is not None and isinstance(aim.owner, Component) and not one.places:
+                known.setdefault(aim.owner.name, (aim.owner, {}))[1][aim.path] = number
+        found = list[Rule]()
+        for owner, paths in known.values():
+            thing = ruled(owner, [*paths])
+            cut = int(isinstance(thing, Law))
+            if thing is not None:
+                found.append((thing, [(path[cut:], number) for path, number in paths.items() if len(path) > cut]))
+        return found
 
     @cached_property
     def _bounds(self) -> tuple[Array, Array]:
@@ -179,17 +228,22 @@ class Words:
         return made(self.system, self.parameters, x)
 
 
+def _fits(x: Array, thing: Component | Law, paths: Sequence[tuple[tuple[str, ...], int]]) -> bool:
+    new = renewed(thing, [(path, float(x[number])) for path, number in paths])
+    return is_right_law(new) if isinstance(thing, Law) else is_right(thing, new)
+
+
 def _known(
     system: System, structure: WordStructure, parameters: Sequence[Tunable], x: Array
-) -> dict[str, SystemParameter]:
-    """What numbers reach where all are others: a product of which one factor is zero depends on both."""
+) -> tuple[dict[str, SystemParameter], tuple[System, Array] | None]:
+    """What numbers reach where all are others, as a product of which one factor is zero depends on both; that point."""
     moves = np.array([_room(one, value) for one, value in zip(parameters, x.tolist(), strict=True)])
     beside = _beside(system, structure, parameters, x, moves)
     if beside is None:
         # numbers that make another structure by themselves stay
         moves *= [bool(parameter(system, one.field).words.size) for one in parameters]
         beside = _beside(system, structure, parameters, x, moves)
-    return {one.field: parameter(beside or system, one.field) for one in parameters}
+    return {one.field: parameter(beside[0] if beside else system, one.field) for one in parameters}, beside
 
 
 def _is_same(one: SystemParameter, other: SystemParameter) -> bool:
@@ -199,12 +253,13 @@ def _is_same(one: SystemParameter, other: SystemParameter) -> bool:
 
 def _beside(
     system: System, structure: WordStructure, parameters: Sequence[Tunable], x: Array, moves: Array
-) -> System | None:
-    """The System with other numbers; None where it has another structure."""
+) -> tuple[System, Array] | None:
+    """The System with other numbers, and these; None where it has another structure."""
     for share in PROBES:
         with suppress(ModelError):
-            found = made(system, parameters, x + share * moves)
-            return found if structure.is_that_of(words_of(found)) else None
+            there = x + share * moves
+            found = made(system, parameters, there)
+            return (found, there) if structure.is_that_of(words_of(found)) else None
     return None
 
 

@@ -238,9 +238,12 @@ def _law(value: Any, _: Spec, at: At) -> Iterator[Problem]:
     yield from law_problems(value, at)
 
 
-def law_problems(law: Law, at: At) -> Iterator[Problem]:
-    """All mistakes of a friction law."""
-    found = list(object_problems(law, at))
+def law_problems(law: Law, at: At, sound: bool = False) -> Iterator[Problem]:
+    """All mistakes of a friction law.
+
+    Parameters: sound, whether its values are right, so that only rules between them are looked at.
+    """
+    found = list(object_problems(law, at, sound=sound))
     yield from found or (_peak(law, at) if law.sticks else ())
 
 
