@@ -268,3 +268,86 @@ def test_derivatives_by_inertias_are_those_of_differences_of_exact_sums():
     found = words.slopes_at(x)
     np.testing.assert_allclose(found.matrix, whole[found.places], rtol=1e-12, atol=1e-12)
     assert not whole[np.setdiff1d(np.arange(len(whole)), found.places)].any()
+
+
+def same_as_assembled(d: cw.Driveline, by: list[str], x: list[float]) -> None:
+    """What an optimiser gets that has been elsewhere is what the driveline says there: words, or its refusal."""
+    system = d.assemble()
+    numbers = parameters(system, by)
+    words, there = Words(system, numbers), np.array(x)
+    words.at(np.array([one.start for one in numbers]))
+    try:
+        expected = made(system, numbers, there).to_bytes()
+    except cw.ModelError:
+        with pytest.raises(cw.ModelError):
+            words.at(there)
+        return
+    assert words.bytes_at(there) == expected
+
+
+def geared(ratio: float) -> cw.Driveline:
+    """Two shafts that a gear joins, beside a fast one."""
+    d = cw.Driveline("geared")
+    a, b = d.shaft("a", inertia=1.0, speed=0.1), d.shaft("b", inertia=0.5)
+    d.shaft("c", inertia=1.0, speed=1000.0)
+    d.add(cw.Gear("g", input=a, output=b, ratio=ratio))
+    d.add(cw.Damper("d", base=d.housing, follower=b, damping=0.1))
+    return d
+
+
+@pytest.mark.parametrize("x", [[0.4, 9.0], [0.01, 0.1], [1.1, -0.1]])
+def test_inertias_that_make_another_shaft_independent(x: list[float]) -> None:
+    d = geared(3.0)
+    same_as_assembled(d, ["a.inertia", "a.speed"], x)
+    # the Jacobian at a point that is reached from another one is that of the point
+    f = cw.differentiable(d, 1.0, of="b.speed", by=["a.inertia", "a.speed"])
+    f.value_and_jacobian(np.array([1.0, 0.1]))
+    value, jacobian = f.value_and_jacobian(np.array(x))
+    fresh = cw.differentiable(d.assemble().changed({"a.inertia": x[0], "a.speed": x[1]}), 1.0, of="b.speed", by=f.by)
+    assert value == pytest.approx(fresh.value_and_jacobian(np.array(x))[0], rel=1e-9)
+    assert jacobian == pytest.approx(fresh.value_and_jacobian(np.array(x))[1], rel=1e-6)
+
+
+def test_a_speed_that_another_one_contradicts() -> None:
+    d = cw.Driveline("two")
+    a, b = d.shaft("a", inertia=1.0, speed=0.1), d.shaft("b", inertia=1.0, speed=0.1)
+    d.shaft("c", inertia=1.0, speed=1000.0)
+    d.add(cw.Gear("g", input=a, output=b, ratio=1.0))
+    same_as_assembled(d, ["a.speed"], [0.5])
+
+
+@pytest.mark.parametrize("x", [[0.25, 0.2, 0.2], [0.15, 0.2, 0.2], [0.05, 0.02, 0.01]])
+def test_a_number_and_points_of_one_law(x: list[float]) -> None:
+    d = cw.Driveline("braked")
+    a = d.shaft("a", inertia=1.0, speed=10.0)
+    law = cw.CoefficientTable(static=0.3, kinetic=[(0.0, 0.1), (10.0, 0.1)])
+    d.add(cw.Brake("b", shaft=a, gain=1.0, normal_force=10.0, friction=law))
+    same_as_assembled(d, ["b.friction.static", "b.friction.kinetic.values"], x)
+
+
+@pytest.mark.parametrize(
+    ("by", "x"), [(["m.angle"], [0.5]), (["m.angle"], [2.0]), (["m.angle", "stop.upper"], [0.9, 0.8])]
+)
+def test_an_angle_beyond_an_end(by: list[str], x: list[float]) -> None:
+    d = cw.Driveline("stop")
+    m = d.shaft("m", inertia=1.0, angle=0.2)
+    d.add(cw.EndStop("stop", follower=m, upper=1.0))
+    same_as_assembled(d, by, x)
+
+
+@pytest.mark.parametrize("x", [[1.0, 2.0], [-1.0, 2.0], [-1.0, -2.0]])
+def test_a_load_that_is_never_above_zero(x: list[float]) -> None:
+    d = cw.Driveline("pressed")
+    a = d.shaft("a", inertia=1.0, speed=10.0)
+    force = cw.Table([(0.0, 10.0), (1.0, 20.0)])
+    d.add(cw.Brake("b", shaft=a, gain=1.0, normal_force=force, friction=cw.Coulomb(static=0.3, kinetic=0.2)))
+    same_as_assembled(d, ["b.normal_force.values"], x)
+
+
+@pytest.mark.parametrize(
+    "signal", [cw.Step(height=2.0, start=1.0, offset=0.5), cw.Pulse(height=2.0, period=1.0, width=0.5, start=1.0)]
+)
+def test_a_start_before_zero(signal: cw.Signal) -> None:
+    d = cw.Driveline("started")
+    d.add(cw.Torque("t", shaft=d.shaft("a", inertia=1.0), torque=signal))
+    same_as_assembled(d, ["t.torque.start"], [-0.7])

@@ -107,6 +107,27 @@ def test_a_smooth_table_as_with_short_steps(kind: str) -> None:
             assert run.events[0].time == pytest.approx(short.events[0].time, abs=1e-9), seed
 
 
+@pytest.mark.random
+@pytest.mark.parametrize("parallel", [1, 2])
+def test_something_else_happens_between_the_release_and_the_point(parallel: int) -> None:
+    """Another shaft stops there: the step ends at it, and its own end says nothing of the dip."""
+    for seed in range(amount(40)):
+        rng = np.random.default_rng(seed)
+        width, torque = rng.uniform(0.5, 4.0), rng.uniform(4.0, 29.0)
+        points = [(300.0, 0.3), (400.0 - 20.0 * width, 0.3), (400.0, 0.02), (400.0 + 20.0 * width, 0.3), (500.0, 0.3)]
+        expected = 5.0 - width + width * (0.3 - torque / FORCE) / 0.28
+        d = cw.Driveline("two shafts")
+        shaft, other = d.shaft("a", inertia=1.0), d.shaft("b", inertia=1.0, speed=10.0 * rng.uniform(expected, 5.0))
+        friction = law("table", points, "linear", cw.Table([(0.0, 300.0), (END, 500.0)]))
+        for name in ("c1", "c2")[:parallel]:
+            d.add(cw.Brake(name, shaft=shaft, friction=friction, gain=1.0 / parallel, normal_force=FORCE))
+        d.add(cw.Torque("t", shaft=shaft, torque=torque))
+        stops = cw.Coulomb(static=0.1, kinetic=0.1)
+        d.add(cw.Brake("stops", shaft=other, friction=stops, gain=1.0, normal_force=FORCE))
+        gone = [e.time for e in d.simulate(END).events if e.before == "locked" and e.element.startswith("c")]
+        assert gone[0] == pytest.approx(expected, abs=1e-6), seed
+
+
 def test_plates_that_are_heated() -> None:
     points = [(300.0, 0.3), (400.0, 0.3), (425.0, 0.05), (450.0, 0.3), (500.0, 0.3)]
     # 1 J/K heated by 19 W: 115 K after 6.0526 s, where 100 N at a coefficient of 0.15 hold 15 N m

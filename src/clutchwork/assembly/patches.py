@@ -233,9 +233,3 @@ def patched(arrays: Mapping[str, NDArray[Any]], found: list[Patch]) -> dict[str,
             made[patch.array] = arrays[patch.array].copy()
         made[patch.array].reshape(-1)[patch.start : patch.start + len(patch.values)] = patch.values
     return made
-
-
-def changes_anything(arrays: Mapping[str, NDArray[Any]], patch: Patch) -> bool:
-    """Whether a patch differs from what is there, in any bit."""
-    part = arrays[patch.array].reshape(-1)[patch.start : patch.start + len(patch.values)]
-    return part.tobytes() != np.array(patch.values, dtype=part.dtype).tobytes()

@@ -19,10 +19,10 @@ from clutchwork.assembly.changes import is_right, is_right_law, owners_of, ruled
 from clutchwork.assembly.provenance import PROBES, SystemParameter, parameter
 from clutchwork.base.classes import dataclass
 from clutchwork.base.errors import ModelError
-from clutchwork.declare.node import Component, Law
+from clutchwork.declare.node import Component, Law, Node
 from clutchwork.gradients.assembled import Assembled, WordStructure, made, words_of
 from clutchwork.gradients.tables import TableWords
-from clutchwork.model.changes import renewed, target
+from clutchwork.model.changes import Target, field_of, renewed, target
 
 if TYPE_CHECKING:
     from clutchwork.assembly.system import System
@@ -34,6 +34,8 @@ Places = NDArray[np.int64]
 # an element or a law, and its numbers by the fields that lead to them
 Rule = tuple[Component | Law, list[tuple[tuple[str, ...], int]]]
 
+# fields of shafts and masses that say where they are
+PLACES = ("angle", "position")
 # structures of a driveline that are remembered
 MOST_CHARTS = 8
 
@@ -105,7 +107,12 @@ class Chart:
         used = {*fixed, *(number for table in tables for number in table.numbers.tolist())}
         rest = tuple(number for number in range(len(x)) if number not in used)
         made_of = Assembled(system, structure, parameters, x, rest)
-        whole = cls(fixed, {number: one.words for number, one in fixed.items() if one.is_word}, tuple(tables), made_of)
+        beside = _beside_curves(parameters, rest)
+        words = {number: one.words for number, one in fixed.items() if one.is_word and number not in beside}
+        alone = [number for number in words if _is_free(system, fixed[number], parameters[number])]
+        # an angle must fit the ends of any stop, which may be others too
+        written = {} if _moves_places(system, parameters) else {number: words[number] for number in alone}
+        whole = cls(fixed, written, tuple(tables), made_of)
         # numbers that fit together alone are assembled
         return whole if there is None or whole.gives(*there) else replace(whole, written={})
 
@@ -119,32 +126,28 @@ class Chart:
         rest, known = self.beside, self.assembled
         try:
             others = [known.parameters[number] for number in rest]
-            words = words_of(made(known.system, others, x[rest])) if others else known.structure.words
+            system = made(known.system, others, x[rest]) if others else known.system
         except ModelError:
             return None
-        if not self.holds(words if others else None, x):
+        # other inertias may make other speeds independent
+        if not self.holds(words_of(system), x) or system.independent != known.system.independent:
             return None
-        words = words.copy()
+        words = words_of(system).copy()
         for number, places in self.written.items():
             words[places] = x[number]
         for table in self.tables:
             table.write(words, x)
         return words
 
-    def holds(self, words: Array | None, x: Array) -> bool:
-        """Whether the words at a point are of this structure, and follow alike: at zero a number may be at a kink.
-
-        Parameters: words, None where none were assembled.
-        """
-        changed = (x == 0.0) != self._zeros
-        alike = not (changed.any() and changed[list(self.fixed)].any())
-        alike = alike and (words is None or self.assembled.structure.is_that_of(words))
+    def holds(self, words: Array, x: Array) -> bool:
+        """Whether the words at a point are of this structure, and follow alike: at zero a number may be at a kink."""
+        changed = np.sign(x) != self._signs
+        alike = not (changed.any() and changed[list(self.fixed)].any()) and self.assembled.structure.is_that_of(words)
         return alike and all(table.holds(x) for table in self.tables)
 
     @cached_property
-    def _zeros(self) -> NDArray[np.bool_]:
-        found: NDArray[np.bool_] = self.assembled.start == 0.0
-        return found
+    def _signs(self) -> Array:
+        return np.sign(self.assembled.start)
 
     def slopes(self, x: Array) -> Slopes:
         """Derivatives of the words at a point; NoGradient where there is none."""
@@ -192,8 +195,16 @@ class Words:
     def _check(self, x: Array) -> None:
         """Refuse what a driveline with these values refuses, in its words."""
         lower, upper = self._bounds
-        if (x < lower).any() or (x > upper).any() or not all(_fits(x, *rule) for rule in self._rules):
+        beyond = (x < lower).any() or (x > upper).any() or (x[self._pressing] < 0.0).any()
+        if beyond or not all(_fits(x, *rule) for rule in self._rules):
             self.assembled(x)
+
+    @cached_property
+    def _pressing(self) -> list[int]:
+        """Numbers of signals that press a contact, which must be above zero somewhere."""
+        aims = [target(owners_of(self.system), one.field) for one in self.parameters]
+        fields = [None if aim is None else field_of(Target(aim.owner, aim.path[:1]))[1] for aim in aims]
+        return [number for number, spec in enumerate(fields) if spec is not None and spec.presses]
 
     @cached_property
     def _rules(self) -> list[Rule]:
@@ -226,6 +237,29 @@ class Words:
     def assembled(self, x: Array) -> System:
         """The System at a point."""
         return made(self.system, self.parameters, x)
+
+
+def _beside_curves(parameters: Sequence[Tunable], assembled: Sequence[int]) -> set[int]:
+    """Numbers of elements of which points of a curve are assembled: rules hold between the new ones of both."""
+    owners = [one.field.partition(".")[0] for one in parameters]
+    curved = {owners[number] for number in assembled if parameters[number].places}
+    return {number for number, owner in enumerate(owners) if owner in curved}
+
+
+def _moves_places(system: System, parameters: Sequence[Tunable]) -> bool:
+    """Whether angles or positions of shafts and masses are among the numbers."""
+    aims = [target(owners_of(system), one.field) for one in parameters]
+    return any(aim is not None and isinstance(aim.owner, Node) and aim.path[0] in PLACES for aim in aims)
+
+
+def _is_free(system: System, own: SystemParameter, free: Tunable) -> bool:
+    """Whether a number that is a word is one at any value: speeds of shafts may contradict others."""
+    aim = target(owners_of(system), free.field)
+    if aim is None or not isinstance(aim.owner, Node):
+        return True
+    # far beyond what is forgiven of speeds that contradict one another
+    far = 1.0 + max(abs(node.speed or 0.0) for node in system.nodes)
+    return own.is_word_at(own.value + far) and own.is_word_at(own.value - far)
 
 
 def _fits(x: Array, thing: Component | Law, paths: Sequence[tuple[tuple[str, ...], int]]) -> bool:

@@ -24,7 +24,7 @@ template <class Form>
     torques_at(form, step, s);
     return value(set_room(ws, k, ws.observed.carried, ws.step_start.noise[0], ws.loads.now));
   };
-  if (!hit.bends && least >= ample - 1 && f(0.5) >= ample - 1) return;
+  if (!ends_elsewhere(ws, hit) && least >= ample - 1 && f(0.5) >= ample - 1) return;
   const double s = first_dip(f, value(ws.step_start.room[k]), value(ws.step_end.room[k]), hit.s);
   hit.take(s, k);
 }
@@ -53,7 +53,7 @@ struct SetLimit : OwnScale {
       }
       for (int i = ws.held.set_first[k]; i < ws.held.set_first[k + 1]; ++i)
         bends = bends || load_bends(ws, ws.held.set_member[i]);
-      if (!bends && !hit.bends && smaller(before, after) > change) continue;
+      if (!bends && !ends_elsewhere(ws, hit) && smaller(before, after) > change) continue;
       fit(form, step);
       auto f = [&](double s) {
         torques_at(form, step, s);

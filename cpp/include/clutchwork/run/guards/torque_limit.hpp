@@ -117,9 +117,8 @@ struct TorqueLimit {
       if (ws.held.in_set[a] != 0) continue;
       double before, after;
       const bool holds = holds_on(ws, a, step.h, before, after);
-      // up to where a capacity bends, the end of the step says nothing
       const bool pole = ws.ratios.n > 0 && has_pole(ws, a);
-      if (holds && !hit.bends && !pole) continue;
+      if (holds && !ends_elsewhere(ws, hit) && !pole) continue;
       if (pole) {
         fit(form, step);
         hit.take(before_pole(form, step, a, before, hit.s), a);
