@@ -107,8 +107,8 @@ class Chart:
         used = {*fixed, *(number for table in tables for number in table.numbers.tolist())}
         rest = tuple(number for number in range(len(x)) if number not in used)
         made_of = Assembled(system, structure, parameters, x, rest)
-        beside = _beside_curves(parameters, rest)
-        words = {number: one.words for number, one in fixed.items() if one.is_word and number not in beside}
+        together = _beside_curves(parameters, rest)
+        words = {number: one.words for number, one in fixed.items() if one.is_word and number not in together}
         alone = [number for number in words if _is_free(system, fixed[number], parameters[number])]
         # an angle must fit the ends of any stop, which may be others too
         written = {} if _moves_places(system, parameters) else {number: words[number] for number in alone}
