@@ -228,3 +228,19 @@ def test_it_slips_before_a_ratio_at_which_it_holds_nothing(capacity):
     assert [one.cause for one in (leaves, turns, grips)] == ["torque limit", "slip zero", "slip zero"]
     assert np.max(abs(run["v.torque"])) <= capacity * (1.0 + 1e-6)
     clean(run)
+
+
+@pytest.mark.parametrize("to", [0.238, 2.0, -0.5, -3.0])
+@pytest.mark.parametrize("side", ["input", "output"])
+def test_a_jump_beside_a_prescribed_shaft_is_work_of_its_source(to, side):
+    """To the other side of zero too: the kinetic energy is what the source has done."""
+    d = cw.Driveline("jump")
+    a, b = d.shaft("a", inertia=1.0), d.shaft("b", inertia=0.5)
+    ratio = cw.Step(offset=-1.2, height=to + 1.2, start=0.05)
+    d.add(cw.VariableGear("gear", input=a, output=b, ratio=ratio))
+    d.add(cw.PrescribedSpeed("motion", shaft=a if side == "input" else b, speed=cw.Table([(0.0, 0.0), (1.0, -10.0)])))
+    run = d.simulate(0.2)
+    energy = 0.5 * run["a.speed"] ** 2 + 0.25 * run["b.speed"] ** 2
+    assert run["a.speed"][-1] == pytest.approx(to * run["b.speed"][-1], rel=1e-12)
+    # to the tolerance of the work
+    np.testing.assert_allclose(run["motion.work"], energy, rtol=0, atol=1e-6 * energy.max())

@@ -9,12 +9,26 @@
 /// Jumps of the ratios of transmissions. docs/theory/varying-ratios.md
 namespace clutchwork {
 
+/// Whether impulses along both directions of a transmission change both rates as they like.
+template <class T>
+bool may_vary(T p11, T p12, T p22) {
+  return value(p11 * p22 - p12 * p12) > 1e-14 * value(p11 * p22);
+}
+
+/// Root of the mobility of the row of a transmission at a ratio where one rate follows from the other, with its sign:
+/// it may pass zero.
+template <class T>
+T root(T p11, T p12, T p22, T ratio) {
+  auto size = [](T p) { return value(p) > 0 ? sqrt(p) : T(0); };
+  return size(p11) - ratio * (value(p12) < 0 ? -size(p22) : size(p22));
+}
+
 /// Impulses along both directions of a transmission that give its rates, of the means m1 and m2, the changes c1 and c2.
 /// Where one of these follows from the other it is the work of both that is none. docs/theory/varying-ratios.md (12)
 template <class T>
 void impulses_for(T p11, T p12, T p22, T c1, T c2, T m1, T m2, T& j1, T& j2) {
-  const T det = p11 * p22 - p12 * p12;
-  if (value(det) > 1e-14 * value(p11 * p22)) {
+  if (may_vary(p11, p12, p22)) {
+    const T det = p11 * p22 - p12 * p12;
     j1 = (p22 * c1 - p12 * c2) / det, j2 = (p11 * c2 - p12 * c1) / det;
     return;
   }
@@ -46,10 +60,12 @@ void jump_ratio(Workspace<T>& ws, int a, T ratio) {
   const T p11 = dot(nv, x1, x1), p12 = dot(nv, x1, x2), p22 = dot(nv, x2, x2);
   auto mobility = [&](T i) { return p11 - T(2) * i * p12 + i * i * p22; };
   const T r1 = rate_of(ws, d), r2 = rate_of(ws, d + 1), before = mobility(r.value[a]), after = mobility(ratio);
+  const T from = r.value[a];
   r.value[a] = ratio;
   if (holds_nothing(ws, a) && value(after) > 0 && abs(value(r1 - ratio * r2)) > slip_tolerance(ws)) r.jammed = a;
   if (!(value(before) > 0) || !(value(after) > 0)) return;
-  const T to = r2 * sqrt(before / after);
+  const T to =
+      r2 * (may_vary(p11, p12, p22) ? sqrt(before / after) : root(p11, p12, p22, from) / root(p11, p12, p22, ratio));
   T j1, j2, *x = ws.decision.speed;
   impulses_for(p11, p12, p22, ratio * to - r1, to - r2, T(0.5) * (ratio * to + r1), T(0.5) * (to + r2), j1, j2);
   for (int i = 0; i < nv; ++i) x[i] = j1 * x1[i] + j2 * x2[i];
