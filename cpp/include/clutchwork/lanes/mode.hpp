@@ -36,7 +36,8 @@ inline bool may_share(const Workspace<double>& ws) {
   if (ws.reduced.is_sparse || ws.reduced.method != Rodas5P::method || ws.reduced.nz < 1 ||
       ws.reduced.nz > lane_speeds || ws.sys.states > lane_states)
     return false;
-  if (g.n_switching + g.n_chattering + g.n_bounded + g.n_faulty + g.n_loads + g.n_gaps + g.n_processes + g.n_bending > 0)
+  if (g.n_switching + g.n_chattering + g.n_bounded + g.n_faulty + g.n_loads + g.n_gaps + g.n_processes + g.n_bending >
+      0)
     return false;
   if (ws.held.n_sets + ws.held.n_driven > 0) return false;
   // the work of prescribed speeds asks for shorter steps
