@@ -20,6 +20,7 @@ from clutchwork.base.classes import dataclass
 from clutchwork.base.errors import ModelError, near
 from clutchwork.base.plural import counted
 from clutchwork.base.quote import quote
+from clutchwork.declare.calls import explained_methods
 from clutchwork.declare.core import core
 from clutchwork.declare.layout import COUNTS, FIELDS, SPARSE
 from clutchwork.declare.node import Component, Node, ShiftTable, ThermalNode
@@ -39,6 +40,7 @@ GROUPS = ("elements", "contacts", "motions", "sensors", "flows", "processes")
 LATER, MAKES = frozenset((*GROUPS, "nodes", "gears", "inputs", "source")), "_makes"
 
 
+@explained_methods("system")
 @dataclass(frozen=True, eq=False, repr=False)
 class SystemData:
     """What a System holds, and what follows from that alone."""
