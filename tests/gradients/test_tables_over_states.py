@@ -152,9 +152,9 @@ def test_an_ordinate_that_a_step_could_run_over_counts() -> None:
 @pytest.mark.parametrize("kind", KINDS)
 def test_random_tables(kind: str) -> None:
     compared = 0
-    for seed in range(amount(12)):
+    for seed in range(amount(40)):
         model, t_end, by = KINDS[kind](np.random.default_rng([seed, 7]))
         count, wrong = missed(model, t_end, OUTPUTS[kind], by)
         compared += count
         assert not wrong, f"seed {seed}: {wrong}"
-    assert compared > 4 * amount(12)
+    assert compared > 4 * amount(40)

@@ -229,7 +229,12 @@ def test_mistakes() -> None:
     d.add(cw.EndStop("outside", follower=body, lower=0.0, upper=1.0))
     d.add(cw.Backlash("twist", base=d.housing, follower=body, gap=0.1, initial_twist=0.2))
     found = "\n".join(map(str, d.check()))
-    for words in ("give one end or both", "not above the lower end", "is 2, outside 0 to 1", "outside the gap of 0.1"):
+    for words in (
+        "give one end or both",
+        "not above the lower end",
+        "is 2 at the start, above the upper end, 1",
+        "outside the gap of 0.1",
+    ):
         assert words in found
 
 

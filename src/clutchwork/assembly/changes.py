@@ -113,7 +113,7 @@ class Quick(NamedTuple):
     inertias: Mapping[str, float]  # of shafts and masses
 
     def made(self, old: SystemData, name: str) -> dict[str, Any]:
-        """What a System with them has of this name, and what comes with it."""
+        """The item of a changed System with this name, and the items that are made together with it."""
         if name != "source":
             return self.content(old)
         return {"source": None if old.source is None else with_values(old.source, self.aims)}

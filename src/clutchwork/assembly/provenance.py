@@ -52,7 +52,7 @@ class SystemParameter:
     value: Any
     unit: str
     bounds: tuple[float, float]  # what its declaration allows
-    # places that another value changes in each array, in flat order; nothing: it acts on nothing here
+    # places that another value changes in each array, in flat order; empty: none, or all arrays get other sizes
     reach: Reach
     is_word: bool  # each of these is the number itself
     inputs: tuple[int, ...]  # numbers of the signals that it is, or is inside of
@@ -186,7 +186,7 @@ def _changed(system: SystemData, name: str, value: Any) -> SystemData | None:
 
 
 def _others(value: Any, spec: Spec) -> Iterator[Any]:
-    """Values beside one."""
+    """Other values that the field may take, near the present one."""
     if isinstance(value, bool) or spec.choices:
         yield from (other for other in (spec.choices or (True, False)) if other != value)
     elif isinstance(value, Real):

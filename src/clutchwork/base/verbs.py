@@ -11,7 +11,7 @@ _WORK: dict[str, Callable[..., Any]] = {}
 
 
 def does(verb: str) -> Callable[[F], F]:
-    """Mark the function that does the work of a verb."""
+    """Register the function that a verb calls."""
 
     def register(function: F) -> F:
         _WORK[verb] = function
@@ -21,5 +21,5 @@ def does(verb: str) -> Callable[[F], F]:
 
 
 def do(verb: str, *given: Any) -> Any:
-    """Let the work of a verb be done."""
+    """Call the function that is registered for a verb."""
     return _WORK[verb](*given)

@@ -329,7 +329,7 @@ class Component(Element):
         return None
 
     def drives(self) -> bool | None:
-        """Of an element at one shaft: whether it drives it, or loads it; None: neither. Pictures have drives left."""
+        """Whether an element at one shaft drives or loads it; None: neither. Schematics show drives on the left."""
         return None
 
     def fault_warning(self) -> str:

@@ -53,7 +53,8 @@ class EndStop(Stop):
         (start,) = self.initial_states()
         if lower <= start <= upper:
             return []
-        return [("initial_position", f"is {start:g}, outside {lower:g} to {upper:g}", "start between the ends")]
+        end = f"below the lower end, {lower:g}" if start < lower else f"above the upper end, {upper:g}"
+        return [("initial_position", f"is {start:g} at the start, {end}", "start between the ends")]
 
     def is_open(self) -> bool:
         """Whether its position at the start may follow from what moves a mass."""

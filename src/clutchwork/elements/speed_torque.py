@@ -19,5 +19,5 @@ class SpeedTorque(Component):
     gain: float = param("1", "factor on the torque", default=1.0)
 
     def drives(self) -> bool:
-        """Where its table drives more than it brakes."""
+        """Whether its table drives more than it brakes."""
         return drives_by(self.gain * float(torque) for _, torque in self.torque)

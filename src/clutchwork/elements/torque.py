@@ -18,5 +18,5 @@ class Torque(Component):
     torque: SignalLike = signal("N m", "torque on the shaft", units=("N",))
 
     def drives(self) -> bool:
-        """By its largest torque over time."""
+        """Whether it drives or loads the shaft, by the sign of its largest torque over time."""
         return signal_drives(self.torque)

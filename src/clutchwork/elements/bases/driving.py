@@ -17,7 +17,7 @@ def drives_by(torques: Iterable[float]) -> bool:
 
 
 def signal_drives(torque: Any) -> bool:
-    """The same of a torque that is given over time; what is only known in the run is taken for a drive."""
+    """Whether a torque given over time drives or loads its shaft; one known only in the run counts as a drive."""
     if isinstance(torque, Signal):
         return drives_by([reached.value for reached in extremes(torque)] or [1.0])
     return not isinstance(torque, Real) or float(torque) > 0.0
