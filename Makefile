@@ -28,7 +28,7 @@ PIP := $(BIN)/python -m pip --disable-pip-version-check --quiet
 JOBS ?= $(shell getconf _NPROCESSORS_ONLN 2>/dev/null || echo 2)
 
 # what the compiled core and the type stub are made from; other Python files take effect without a build
-CORE_SOURCES := $(shell find CMakeLists.txt cpp interfaces/python $(addprefix src/clutchwork/,base declare elements laws signals face/names.py) \
+CORE_SOURCES := $(shell find CMakeLists.txt cpp interfaces/python interfaces/fmi $(addprefix src/clutchwork/,base declare elements laws signals face/names.py) \
 	-name '*.py' -o -name '*.hpp' -o -name '*.cpp' -o -name '*.h' -o -name '*.txt' 2>/dev/null) \
 	$(wildcard tools/gen_registry.py tools/registry/*.py tools/gen_stubs.py)
 WASM := src/clutchwork/page/static/core.wasm

@@ -217,6 +217,17 @@ int cw_advance(cw_run* run, double t_end, double* times, double* rows, std::int6
   return int(status);
 }
 
+int cw_advance_to_event(cw_run* run, double t_end) {
+  Sink sink;
+  const int refused = take_sink(sink, run, t_end, nullptr, nullptr, 0, 0);
+  return refused != 0 ? refused : int(advance(run->ws, t_end, sink, true));
+}
+
+double cw_next_knot(const cw_run* run) {
+  if (run == nullptr) return infinity;
+  return larger(run->ws.in.next_knot, present(run->ws));
+}
+
 std::int64_t cw_group_size(const cw_run* run) { return run == nullptr ? -1 : group_size(run->ws.sys); }
 
 int cw_advance_group(cw_member* members, std::int64_t count, double t_end, void* memory, std::int64_t memory_bytes) {
@@ -336,6 +347,34 @@ int cw_restore(cw_run* run, const void* bytes, std::int64_t n) {
   run->ws.poll = poll;
   run->ws.in.expected = expected;
   saved::resume(run->ws, from + state_head::bytes);
+  return 1;
+}
+
+std::int64_t cw_copy(const cw_run* run, void* copy, std::int64_t room) {
+  if (run == nullptr || copy == nullptr || room < run->bytes) return -1;
+  auto* to = static_cast<unsigned char*>(copy);
+  std::memcpy(to, run, sizeof(cw_run));
+  saved::copy_arrays(to + head, run->arrays, run->bytes - head);
+  return run->bytes;
+}
+
+int cw_paste(cw_run* run, const void* copy, std::int64_t bytes) {
+  if (run == nullptr || copy == nullptr || bytes != run->bytes) return 0;
+  const auto* from = static_cast<const unsigned char*>(copy);
+  alignas(cw_run) unsigned char own[sizeof(cw_run)];
+  std::memcpy(own, from, sizeof own);
+  const cw_run& other = *reinterpret_cast<const cw_run*>(own);
+  if (other.bytes != bytes || other.fingerprint != run->fingerprint) return 0;
+  const Poll poll = run->ws.poll;
+  const bool expected = run->ws.in.expected;
+  drop_fences(run->arrays, run->bytes - head);
+  run->ws = other.ws;
+  run->ws.poll = poll;
+  run->ws.in.expected = expected;
+  // where everything is in the memory of this run
+  bind(run->ws.sys, run->system, run->system_bytes);
+  std::memcpy(run->arrays, from + head, std::size_t(bytes - head));
+  carve(run->ws, run->arrays);
   return 1;
 }
 

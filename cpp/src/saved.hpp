@@ -343,4 +343,16 @@ inline void resume(Workspace<double>& ws, const unsigned char* bytes) {
   ws.fresh_phase = ws.fresh_phase || !entered;
 }
 
+/// The arrays of a run as they stand, fences included.
+#ifdef __SANITIZE_ADDRESS__
+__attribute__((no_sanitize("address"))) inline void copy_arrays(unsigned char* to, const unsigned char* from,
+                                                                std::int64_t n) {
+  for (std::int64_t i = 0; i < n; ++i) to[i] = from[i];
+}
+#else
+inline void copy_arrays(unsigned char* to, const unsigned char* from, std::int64_t n) {
+  std::memcpy(to, from, std::size_t(n));
+}
+#endif
+
 }  // namespace clutchwork::saved

@@ -61,6 +61,11 @@ class SystemParameter:
     _beside: SystemData | None
 
     @property
+    def about(self) -> str:
+        """What its declaration says of it."""
+        return self._spec.doc
+
+    @property
     def is_signal(self) -> bool:
         """Whether it reaches signals and nothing else."""
         return bool(self.inputs) and self.reach.keys() <= OF_SIGNALS
@@ -107,6 +112,28 @@ class SystemParameter:
         """Whether with another value its words are that, and nothing else changes."""
         made = _changed(self._system, self.name, value)
         return made is not None and _is_value(made, differing(self._system, made), self.reach, value)
+
+
+def straight_lines(parameter: SystemParameter) -> NDArray[np.float64] | None:
+    """Derivatives of the words of a number where all of them are straight lines over it; None elsewhere."""
+    system, name, value = parameter._system, parameter.name, float(parameter.value)
+    if parameter.derivative is not None:
+        return parameter.derivative
+    if not all(_is_real(system, array) for array in parameter.reach):
+        return None
+    low, high = parameter.bounds
+    scale = abs(value) or 1.0
+    far = [x for x in (value - scale, value - 0.5 * scale, value + 0.5 * scale, value + scale) if low < x < high]
+    made = [(x, new) for x in far if (new := _changed(system, name, x)) is not None]
+    if len(made) < 2 or any(differing(system, new) is None for _, new in made):
+        return None
+    base = _words(system)
+    slopes = [(_words(new) - base) / (x - value) for x, new in made]
+    moved = np.flatnonzero(slopes[0])
+    size = np.max(np.abs(slopes), axis=0)
+    straight = all(np.allclose(slope, slopes[0], rtol=1e-12, atol=1e-14 * size.max()) for slope in slopes)
+    is_whole = np.array_equal(moved, parameter.words)
+    return slopes[0][moved] if straight and is_whole else None
 
 
 class SystemParameters(Mapping[str, SystemParameter]):
@@ -223,6 +250,16 @@ def _is_value(made: SystemData, differs: Reach | None, reach: Reach, value: floa
     inside = all(np.isin(places, reach[name]).all() for name, places in differs.items())
     words = (made.arrays[name].reshape(-1)[places] for name, places in reach.items() if _is_real(made, name))
     return inside and all(map(partial(_is_real, made), reach)) and all(np.all(own == value) for own in words)
+
+
+def _words(system: SystemData) -> NDArray[np.float64]:
+    """All real numbers of a System by their places in its bytes; zero where something else is."""
+    words = np.zeros(len(system.to_bytes()) // 8)
+    for name, array in system.arrays.items():
+        if _is_real(system, name):
+            first = system.starts[name] // 8
+            words[first : first + array.size] = array.reshape(-1)
+    return words
 
 
 def _is_real(system: SystemData, array: str) -> bool:

@@ -30,6 +30,12 @@ def sources() -> dict[Path, bytes]:
     raise FileNotFoundError(f"{installed} does not hold the sources of the core: install clutchwork again")
 
 
+def licence() -> bytes:
+    """The licence of the core."""
+    installed = Path(core().__file__).parent / INSTALLED / "LICENSE"
+    return (installed if installed.is_file() else CHECKOUT / "LICENSE").read_bytes()
+
+
 def _below(folder: Path) -> Iterator[tuple[Path, bytes]]:
     for path in sorted(folder.rglob("*")):
         inside = path.relative_to(folder)

@@ -27,6 +27,7 @@ from clutchwork.codegen import command as codegen
 from clutchwork.command import check, completion, new, plot, reference, run
 from clutchwork.diagrams import command as diagrams
 from clutchwork.fit import command as fit
+from clutchwork.fmu import command as fmu
 from clutchwork.linear import command as linear
 from clutchwork.page import command as page
 from clutchwork.rig import command as rig
@@ -36,7 +37,7 @@ from clutchwork.sweeps import command as sweeps
 __all__ = ["EXIT_CODES", "INTERRUPTED", "STOPPED", "main", "parser"]
 
 # those of rooms, each in its command.py
-ROOMS = (schematic, diagrams, sweeps, linear, rig, fit, codegen, page)
+ROOMS = (schematic, diagrams, sweeps, linear, rig, fit, codegen, fmu, page)
 ABOUT = "Simulates drivelines with clutches and brakes: engagements, launches, gear shifts."
 EXAMPLES = (
     ("clutchwork demo", "see what it does: a gearbox launches and shifts"),

@@ -279,6 +279,17 @@ class Driveline:
 
         save(self._model, path)
 
+    @explained("d.to_fmu", path="'car.fmu'")
+    def to_fmu(self, path: str | Path, **given: Any) -> Path:
+        """Write an FMU for co-simulation, which other simulators run; its path.
+
+        Parameters: given, as for `cw.export_fmu`: inputs, outputs, parameters, version, picture, t_end and options.
+        """
+        from clutchwork.base.verbs import do
+
+        made: Path = do("driveline.fmu", self, path, given)
+        return made
+
     @classmethod
     def from_dict(cls, data: Mapping[str, Any], folder: str | Path = "") -> Driveline:
         """A driveline from the content of a model file; CSV paths are relative to the folder."""

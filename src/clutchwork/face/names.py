@@ -44,6 +44,7 @@ NAMES = {
     "UseError": "base.errors",
     "environment": "learn.environment",
     "export_c": "codegen",
+    "export_fmu": "fmu",
     "load_run": "run.saved",
     "OutputWarning": "sweeps.result",
     "Sweep": "sweeps.result",

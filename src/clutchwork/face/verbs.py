@@ -11,6 +11,7 @@ if TYPE_CHECKING:
 
     from clutchwork.assembly.system import System
     from clutchwork.declare.node import Law, Signal
+    from clutchwork.driveline.driveline import Driveline
     from clutchwork.gearbox.gearbox import Gearbox
     from clutchwork.results.gradient import Gradient
     from clutchwork.run.trajectory import Trajectory
@@ -38,6 +39,14 @@ def show_system(system: System) -> Any:
     from clutchwork.results.overview import parts
 
     return parts(system)
+
+
+@does("driveline.fmu")
+def to_fmu(driveline: Driveline, path: Any, given: Any) -> Path:
+    """An FMU of a driveline."""
+    from clutchwork.fmu.export import export_fmu
+
+    return export_fmu(driveline, path, **given)
 
 
 @does("run.gradient")

@@ -80,8 +80,8 @@ def explain(status: int, component: Any, time: float, value: float, quantity: st
         told = f"; the largest is {quantity}, {value:g}" if isfinite(value) else f": {quantity} is {value:g}"
         return f"stopped at {time:.9g} s: {message}{told}: {remedy}"
     where = f" at {component.name!r}" if component is not None else ""
-    covered = _covered(component) if name == "out_of_table" else ""
-    seen = f" (value {value:g}{covered})" if component is not None and name in WITH_VALUE else ""
+    ranges = covered(component) if name == "out_of_table" else ""
+    seen = f" (value {value:g}{ranges})" if component is not None and name in WITH_VALUE else ""
     return f"stopped at {time:.9g} s: {message}{where}{seen}: {remedy}"
 
 
@@ -93,7 +93,7 @@ def jam_of(system: System, component: Any, index: int) -> str:
     return "light" if any(system.transmission_speed[places] >= 0) else "ratio"
 
 
-def _covered(component: Any) -> str:
+def covered(component: Any) -> str:
     """Ranges of the tables of a friction law."""
     law, axes = component.friction, dict[str, str]()
     for item, spec in specs(type(law), "curve", "numbers"):

@@ -271,10 +271,10 @@ def message_of(system: System, status: int, run: Any) -> str:
 
 def names_part(system: System, index: int) -> bool:
     """Whether a number is that of an element or a contact."""
-    return 0 <= index < len(_acting(system))
+    return 0 <= index < len(acting(system))
 
 
-def _acting(system: System) -> list[Any]:
+def acting(system: System) -> list[Any]:
     """The elements and contacts by the numbers that the core has for them: one of several ways has one for each."""
     from clutchwork.assembly.wiring import wiring
 
@@ -286,7 +286,7 @@ def told(system: System, status: int, index: int, at: float, value: float, colum
     """Why a run stopped at a time: an element or contact by its number, and its value, or a number of the row."""
     from clutchwork.run.failure import explain, jam_of
 
-    parts = _acting(system)
+    parts = acting(system)
     if STATUSES[status] == "zeno" and index < 0:
         number = int(value)
         if number >= len(system.inputs):

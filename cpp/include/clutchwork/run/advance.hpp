@@ -247,13 +247,14 @@ Status reach_phase(Workspace<T>& ws) {
   return ws.fresh_phase && !enter_mode(ws) ? Status::no_mode : Status::running;
 }
 
-/// Integrate to t_end, filling rows and events on the way.
+/// Integrate to t_end, or up to the first event, filling rows and events on the way.
 template <class T>
-Status advance(Workspace<T>& ws, double t_end, Sink& sink) {
+Status advance(Workspace<T>& ws, double t_end, Sink& sink, bool to_event = false) {
   Status status = reach_phase(ws);
   while (status == Status::running) {
     status = dispatch(ws, t_end, sink);
     if (status == Status::running && !ws.stiffened) status = switch_modes(ws);
+    if (status == Status::running && to_event && ws.events.n > 0) return Status::done;
     if (status == Status::running) status = reach_phase(ws);
   }
   return status;

@@ -1,0 +1,287 @@
+#include <cstring>
+
+#include "calls.hpp"
+#include "files.hpp"
+
+/// The functions of FMI 2.0 for co-simulation, by names and types of the standard (https://fmi-standard.org).
+
+using namespace clutchwork::fmi;
+
+#ifdef _WIN32
+#define FMI_EXPORT extern "C" __declspec(dllexport)
+#else
+#define FMI_EXPORT extern "C" __attribute__((visibility("default")))
+#endif
+
+namespace {
+
+using Reference = unsigned int;
+using Logger = void (*)(void* environment, const char* instance, int status, const char* category, const char* message,
+                        ...);
+
+struct Callbacks {
+  Logger logger;
+  void* (*allocate)(std::size_t, std::size_t);
+  void (*release)(void*);
+  void (*step_finished)(void*, int);
+  void* environment;
+};
+
+struct EventInfo {
+  int discrete_states_needed, terminate, nominals_changed, states_changed, next_time_defined;
+  double next_time;
+};
+
+struct Component {
+  Logger logger;
+  void* environment;
+  std::string name;
+  Instance* instance;
+};
+
+void say(void* who, Answer answer, const char* category, const char* text) {
+  const auto* component = static_cast<Component*>(who);
+  if (component->logger != nullptr)
+    component->logger(component->environment, component->name.c_str(), int(answer), category, "%s", text);
+}
+
+Instance* of(void* c) { return c == nullptr ? nullptr : static_cast<Component*>(c)->instance; }
+
+int missing(void* c, const char* call) {
+  return int(allowed(of(c), any_stage, call, [&](Instance& it) {
+    return it.refuse(std::string(call) + " belongs to model exchange, which this FMU does not have");
+  }));
+}
+
+/// A value as a number of its type.
+template <class X>
+int get(void* c, const char* call, bool whole, const Reference* references, std::size_t n, X* values) {
+  return int(allowed(of(c), any_stage & ~in(Stage::instantiated), call, [&](Instance& it) {
+    if (n > 0 && (references == nullptr || values == nullptr)) return it.refuse(std::string(call) + " has no values");
+    return each(n, [&](std::size_t i) {
+      const Variable* one = it.variable(references[i]);
+      if (one != nullptr && (one->kind == Kind::mode) != whole)
+        return it.refuse("'" + one->name + "' has another type: use " + (whole ? "fmi2GetReal" : "fmi2GetInteger"));
+      double value = 0;
+      const Answer answer = it.get(references[i], &value);
+      values[i] = X(value);
+      return answer;
+    });
+  }));
+}
+
+/// Values of a type that no variable has.
+int none(void* c, const char* call, std::size_t n) {
+  return int(allowed(of(c), any_stage, call, [&](Instance& it) {
+    return n == 0 ? Answer::ok : it.refuse(std::string(call) + ": no variable of this FMU has that type");
+  }));
+}
+
+}  // namespace
+
+FMI_EXPORT const char* fmi2GetTypesPlatform() { return "default"; }
+FMI_EXPORT const char* fmi2GetVersion() { return "2.0"; }
+
+FMI_EXPORT int fmi2SetDebugLogging(void* c, int on, std::size_t n, const char* const names[]) {
+  return int(allowed(of(c), any_stage, "fmi2SetDebugLogging", [&](Instance& it) {
+    for (int k = 0; k < categories && n == 0; ++k) it.log(on != 0, Category(k));
+    return each(n, [&](std::size_t i) {
+      for (int k = 0; k < categories; ++k)
+        if (names[i] != nullptr && std::strcmp(names[i], category_names[k]) == 0)
+          return it.log(on != 0, Category(k)), Answer::ok;
+      return it.refuse("there is no log category of that name: error, warning, events");
+    });
+  }));
+}
+
+FMI_EXPORT void* fmi2Instantiate(const char* name, int type, const char* guid, const char* location,
+                                 const Callbacks* callbacks, int, int logging) {
+  auto* made = new Component{callbacks != nullptr ? callbacks->logger : nullptr,
+                             callbacks != nullptr ? callbacks->environment : nullptr, name != nullptr ? name : "",
+                             nullptr};
+  const Listener listener{made, say};
+  if (type == 1) {
+    made->instance = Instance::make(resource_path(location), guid, listener);
+  } else {
+    say(made, Answer::error, category_names[0], "this FMU is for co-simulation, not for model exchange");
+  }
+  if (made->instance == nullptr) {
+    delete made;
+    return nullptr;
+  }
+  if (logging != 0) made->instance->log(true, Category::events);
+  return made;
+}
+
+FMI_EXPORT void fmi2FreeInstance(void* c) {
+  if (c == nullptr) return;
+  delete of(c);
+  delete static_cast<Component*>(c);
+}
+
+FMI_EXPORT int fmi2SetupExperiment(void* c, int has_tolerance, double tolerance, double start, int, double) {
+  return int(allowed(of(c), in(Stage::instantiated), "fmi2SetupExperiment",
+                     [&](Instance& it) { return it.experiment(start, has_tolerance != 0, tolerance); }));
+}
+
+FMI_EXPORT int fmi2EnterInitializationMode(void* c) {
+  return int(allowed(of(c), in(Stage::instantiated), "fmi2EnterInitializationMode",
+                     [&](Instance& it) { return it.initialize(); }));
+}
+
+FMI_EXPORT int fmi2ExitInitializationMode(void* c) {
+  return int(allowed(of(c), in(Stage::initialization), "fmi2ExitInitializationMode",
+                     [&](Instance& it) { return it.enter(Stage::step); }));
+}
+
+FMI_EXPORT int fmi2Terminate(void* c) {
+  return int(
+      allowed(of(c), running, "fmi2Terminate", [&](Instance& it) { return it.enter(Stage::terminated); }));
+}
+
+FMI_EXPORT int fmi2Reset(void* c) {
+  return int(allowed(of(c), any_stage, "fmi2Reset", [&](Instance& it) { return it.reset(), Answer::ok; }));
+}
+
+FMI_EXPORT int fmi2GetReal(void* c, const Reference* references, std::size_t n, double* values) {
+  return get(c, "fmi2GetReal", false, references, n, values);
+}
+
+FMI_EXPORT int fmi2GetInteger(void* c, const Reference* references, std::size_t n, int* values) {
+  return get(c, "fmi2GetInteger", true, references, n, values);
+}
+
+FMI_EXPORT int fmi2GetBoolean(void* c, const Reference*, std::size_t n, int*) { return none(c, "fmi2GetBoolean", n); }
+FMI_EXPORT int fmi2GetString(void* c, const Reference*, std::size_t n, const char**) {
+  return none(c, "fmi2GetString", n);
+}
+
+FMI_EXPORT int fmi2SetReal(void* c, const Reference* references, std::size_t n, const double* values) {
+  return int(allowed(of(c), before_steps | running, "fmi2SetReal", [&](Instance& it) {
+    if (n > 0 && (references == nullptr || values == nullptr)) return it.refuse("fmi2SetReal has no values");
+    return each(n, [&](std::size_t i) { return it.set(references[i], values[i]); });
+  }));
+}
+
+FMI_EXPORT int fmi2SetInteger(void* c, const Reference*, std::size_t n, const int*) {
+  return none(c, "fmi2SetInteger", n);
+}
+FMI_EXPORT int fmi2SetBoolean(void* c, const Reference*, std::size_t n, const int*) {
+  return none(c, "fmi2SetBoolean", n);
+}
+FMI_EXPORT int fmi2SetString(void* c, const Reference*, std::size_t n, const char* const*) {
+  return none(c, "fmi2SetString", n);
+}
+
+FMI_EXPORT int fmi2SetRealInputDerivatives(void* c, const Reference* references, std::size_t n, const int* orders,
+                                           const double* values) {
+  return int(allowed(of(c), before_steps | running, "fmi2SetRealInputDerivatives", [&](Instance& it) {
+    if (n > 0 && (references == nullptr || values == nullptr || orders == nullptr))
+      return it.refuse("fmi2SetRealInputDerivatives has no values");
+    return each(n, [&](std::size_t i) { return it.set_slope(references[i], orders[i], values[i]); });
+  }));
+}
+
+FMI_EXPORT int fmi2GetRealOutputDerivatives(void* c, const Reference*, std::size_t n, const int*, double*) {
+  return none(c, "fmi2GetRealOutputDerivatives", n);
+}
+
+FMI_EXPORT int fmi2DoStep(void* c, double from, double size, int) {
+  return int(allowed(of(c), in(Stage::step, Stage::failed), "fmi2DoStep", [&](Instance& it) {
+    const Answer answer = it.step(from, size, false).answer;
+    it.forget_slopes();
+    return answer;
+  }));
+}
+
+FMI_EXPORT int fmi2CancelStep(void* c) {
+  return int(allowed(of(c), any_stage, "fmi2CancelStep",
+                     [](Instance& it) { return it.refuse("a step is never pending, so that none can be cancelled"); }));
+}
+
+FMI_EXPORT int fmi2GetStatus(void*, int, int*) { return int(Answer::discard); }
+FMI_EXPORT int fmi2GetRealStatus(void* c, int kind, double* value) {
+  return int(allowed(of(c), any_stage, "fmi2GetRealStatus", [&](Instance& it) {
+    if (kind != 2 || value == nullptr) return Answer::discard;
+    return *value = it.time(), Answer::ok;
+  }));
+}
+FMI_EXPORT int fmi2GetIntegerStatus(void*, int, int*) { return int(Answer::discard); }
+FMI_EXPORT int fmi2GetBooleanStatus(void* c, int kind, int* value) {
+  if (kind != 3 || value == nullptr || c == nullptr) return int(Answer::discard);
+  return *value = 0, int(Answer::ok);
+}
+FMI_EXPORT int fmi2GetStringStatus(void*, int, const char**) { return int(Answer::discard); }
+
+// ------------------------------------------------------------------------------------------------------------- states
+
+FMI_EXPORT int fmi2GetFMUstate(void* c, void** state) {
+  return int(allowed(of(c), any_stage, "fmi2GetFMUstate", [&](Instance& it) {
+    if (state == nullptr) return it.refuse("fmi2GetFMUstate has no place for the state");
+    delete static_cast<State*>(*state);
+    return *state = it.state(), Answer::ok;
+  }));
+}
+
+FMI_EXPORT int fmi2SetFMUstate(void* c, void* state) {
+  return int(allowed(of(c), any_stage, "fmi2SetFMUstate", [&](Instance& it) {
+    return state == nullptr ? it.refuse("there is no state") : it.go_to(*static_cast<State*>(state));
+  }));
+}
+
+FMI_EXPORT int fmi2FreeFMUstate(void* c, void** state) {
+  return int(allowed(of(c), any_stage, "fmi2FreeFMUstate", [&](Instance&) {
+    if (state != nullptr) delete static_cast<State*>(*state), *state = nullptr;
+    return Answer::ok;
+  }));
+}
+
+FMI_EXPORT int fmi2SerializedFMUstateSize(void* c, void* state, std::size_t* size) {
+  return int(allowed(of(c), any_stage, "fmi2SerializedFMUstateSize", [&](Instance& it) {
+    if (state == nullptr || size == nullptr) return it.refuse("there is no state");
+    return *size = it.serialized(*static_cast<State*>(state)).size(), Answer::ok;
+  }));
+}
+
+FMI_EXPORT int fmi2SerializeFMUstate(void* c, void* state, char bytes[], std::size_t size) {
+  return int(allowed(of(c), any_stage, "fmi2SerializeFMUstate", [&](Instance& it) {
+    if (state == nullptr || bytes == nullptr) return it.refuse("there is no state");
+    const auto made = it.serialized(*static_cast<State*>(state));
+    if (size < made.size()) return it.refuse("there is too little room for the state");
+    return std::memcpy(bytes, made.data(), made.size()), Answer::ok;
+  }));
+}
+
+FMI_EXPORT int fmi2DeSerializeFMUstate(void* c, const char bytes[], std::size_t size, void** state) {
+  return int(allowed(of(c), any_stage, "fmi2DeSerializeFMUstate", [&](Instance& it) {
+    if (state == nullptr) return it.refuse("fmi2DeSerializeFMUstate has no place for the state");
+    State* made = it.deserialized(reinterpret_cast<const unsigned char*>(bytes), std::int64_t(size));
+    if (made == nullptr) return Answer::error;
+    delete static_cast<State*>(*state);
+    return *state = made, Answer::ok;
+  }));
+}
+
+FMI_EXPORT int fmi2GetDirectionalDerivative(void* c, const Reference*, std::size_t, const Reference*, std::size_t,
+                                            const double*, double*) {
+  return none(c, "fmi2GetDirectionalDerivative", 1);
+}
+
+// --------------------------------------------------------------------------------- model exchange: there, and refused
+
+FMI_EXPORT int fmi2EnterEventMode(void* c) { return missing(c, "fmi2EnterEventMode"); }
+FMI_EXPORT int fmi2NewDiscreteStates(void* c, EventInfo*) { return missing(c, "fmi2NewDiscreteStates"); }
+FMI_EXPORT int fmi2EnterContinuousTimeMode(void* c) { return missing(c, "fmi2EnterContinuousTimeMode"); }
+FMI_EXPORT int fmi2CompletedIntegratorStep(void* c, int, int*, int*) {
+  return missing(c, "fmi2CompletedIntegratorStep");
+}
+FMI_EXPORT int fmi2SetTime(void* c, double) { return missing(c, "fmi2SetTime"); }
+FMI_EXPORT int fmi2SetContinuousStates(void* c, const double*, std::size_t) {
+  return missing(c, "fmi2SetContinuousStates");
+}
+FMI_EXPORT int fmi2GetDerivatives(void* c, double*, std::size_t) { return missing(c, "fmi2GetDerivatives"); }
+FMI_EXPORT int fmi2GetEventIndicators(void* c, double*, std::size_t) { return missing(c, "fmi2GetEventIndicators"); }
+FMI_EXPORT int fmi2GetContinuousStates(void* c, double*, std::size_t) { return missing(c, "fmi2GetContinuousStates"); }
+FMI_EXPORT int fmi2GetNominalsOfContinuousStates(void* c, double*, std::size_t) {
+  return missing(c, "fmi2GetNominalsOfContinuousStates");
+}

@@ -1,0 +1,472 @@
+#include "instance.hpp"
+
+#include <clutchwork/layout.gen.hpp>
+
+#include <cmath>
+#include <cstdio>
+#include <cstring>
+
+namespace clutchwork::fmi {
+
+namespace {
+
+constexpr int orders = 3;
+/// Steps and events that one call may take.
+constexpr double step_budget = 1e7, event_budget = 1e6;
+/// Instants that are closer are one, as a share of them.
+constexpr double round_off = 1e-9;
+
+std::string number(double x) {
+  char text[32];
+  std::snprintf(text, sizeof text, "%.9g", x);
+  return text;
+}
+
+bool is_parameter(const Variable& one) { return one.kind == Kind::tunable || one.kind == Kind::fixed; }
+
+bool is_given(const Variable& one) { return one.kind == Kind::input || one.kind == Kind::slope || is_parameter(one); }
+
+double along(const Place& place, const Variable& one, double base, double value) {
+  return std::isnan(place.slope) ? value : base + place.slope * (value - one.start);
+}
+
+}  // namespace
+
+Instance* Instance::make(const std::string& path, const char* token, Listener listener) {
+  auto* made = new Instance(listener);
+  std::string wrong = made->model_.load(path);
+  if (wrong.empty() && (token == nullptr || made->model_.token != token))
+    wrong = "the description of this FMU is that of another model: unpack the FMU again";
+  if (!wrong.empty()) {
+    made->refuse(wrong);
+    delete made;
+    return nullptr;
+  }
+  const Model& model = made->model_;
+  made->memory_.resize(std::size_t(cw_size(model.system.data(), std::int64_t(model.system.size())) + 64));
+  made->before_.resize(made->memory_.size());
+  made->row_.resize(model.row.size());
+  made->reset();
+  return made;
+}
+
+// ----------------------------------------------------------------------------------------------------------- the log
+
+Answer Instance::say(Answer answer, Category category, const std::string& text) const {
+  if (is_logged_[int(category)] && listener_.say != nullptr)
+    listener_.say(listener_.who, answer, category_names[int(category)], text.c_str());
+  return answer;
+}
+
+/// Why the core stopped, as Python says it.
+std::string Instance::told(int status) const {
+  double value = 0;
+  std::int64_t part = cw_detail(run(), &value);
+  const std::int64_t column = cw_detail_row(run());
+  const std::string at = "stopped at " + number(cw_time(run())) + " s: ";
+  if (status < 0 || status >= int(model_.statuses.size())) return at + "the end of the step is not a time";
+  const auto inputs = std::int64_t(model_.inputs.size());
+  Sentence said = model_.statuses[std::size_t(status)];
+  std::string where, seen;
+  if (Status(status) == Status::zeno && part < 0 && value >= 0 && value < double(inputs)) {
+    const std::string& signal = model_.inputs[std::size_t(value)];
+    return at + "'" + signal + "' has more than 50 knots within a microsecond: thin out the signal";
+  }
+  const auto crowd = std::size_t(value - double(inputs));
+  if (Status(status) == Status::zeno && part < 0 && value >= double(inputs) && crowd < model_.crowded.size())
+    where = " at '" + model_.crowded[crowd] + "'";
+  if (part >= 0 && part < std::int64_t(model_.parts.size())) {
+    const Part& one = model_.parts[std::size_t(part)];
+    where = " at '" + one.name + "'";
+    if (Status(status) == Status::jammed && !one.jam.message.empty()) said = one.jam;
+    const bool is_told = Status(status) == Status::not_finite || Status(status) == Status::chatter;
+    if (is_told) seen = " (value " + number(value) + ")";
+    if (Status(status) == Status::out_of_table) seen = " (value " + number(value) + one.covered + ")";
+  } else if (Status(status) == Status::not_finite && column >= 0 && column < std::int64_t(model_.row.size())) {
+    where = ": " + model_.row[std::size_t(column)] + " is " + number(value);
+  }
+  return at + said.message + where + seen + (said.remedy.empty() ? "" : ": " + said.remedy);
+}
+
+void Instance::take_events() {
+  const std::int64_t n = cw_pending_events(run()), size = cw_event_size();
+  if (n <= 0) return;
+  events_.resize(std::size_t(n * size));
+  cw_take_events(run(), events_.data(), n);
+  for (std::int64_t i = 0; i < n && is_logged_[int(Category::events)]; ++i) {
+    const double* event = events_.data() + i * size;
+    auto word = [](const std::vector<std::string>& words, double k) {
+      return k >= 0 && k < double(words.size()) ? words[std::size_t(k)] : std::string("?");
+    };
+    const double contact = event[1] + double(model_.elements);
+    const bool is_named = event[1] >= 0 && contact < double(model_.parts.size());
+    const std::string name = is_named ? model_.parts[std::size_t(contact)].name : "speeds";
+    const std::string from = word(model_.modes, event[2] + 1), to = word(model_.modes, event[3] + 1);
+    say(Answer::ok, Category::events,
+        number(event[0]) + " s: " + name + " " + from + " to " + to + " (" + word(model_.causes, event[4]) + ")");
+  }
+}
+
+// -------------------------------------------------------------------------------------------------------------- life
+
+Answer Instance::experiment(double t_start, bool has_tolerance, double tolerance) {
+  if (!std::isfinite(t_start)) return refuse("the start time is not a number");
+  now_.t_start = t_start, now_.rtol = 0;
+  if (!has_tolerance) return Answer::ok;
+  now_.rtol = tolerance;
+  now_.is_loaded = false;
+  if (load() && run_ != nullptr) {
+    const bool taken = cw_set_option(run(), "rtol", tolerance) != 0;
+    now_.is_loaded = is_seen_ = false;
+    if (taken) return Answer::ok;
+  }
+  now_.rtol = 0;
+  now_.is_loaded = is_seen_ = false;
+  return say(Answer::ok, Category::warning,
+             "the tolerance " + number(tolerance) + " is out of range: that of the model is kept");
+}
+
+Answer Instance::initialize() {
+  now_.stage = Stage::initialization;
+  return Answer::ok;
+}
+
+Answer Instance::enter(Stage stage) {
+  if (stage != Stage::terminated && !now_.is_loaded && !load()) return Answer::error;
+  now_.stage = stage;
+  return Answer::ok;
+}
+
+void Instance::reset() {
+  now_ = State{};
+  now_.t_start = model_.t_start;
+  for (const Variable& one : model_.variables) now_.value.push_back(one.start);
+  now_.loaded = now_.value;
+  now_.on_line.assign(now_.value.size(), 0.0);
+  now_.slopes.assign(orders * now_.value.size(), 0.0);
+  is_seen_ = false;
+}
+
+/// The bytes of the System with the values of all parameters.
+bool Instance::put(const std::vector<double>& values) {
+  system_ = model_.system;
+  for (std::size_t k = 0; k < model_.variables.size(); ++k) {
+    const Variable& one = model_.variables[k];
+    if (!is_parameter(one) || values[k] == one.start) continue;
+    for (const Place& place : one.words) {
+      double word = 0;
+      std::memcpy(&word, system_.data() + 8 * place.number, 8);
+      word = along(place, one, word, values[k]);
+      std::memcpy(system_.data() + 8 * place.number, &word, 8);
+    }
+  }
+  auto* memory = memory_.data();
+  while (reinterpret_cast<std::uintptr_t>(memory) % 64 != 0) ++memory;
+  const auto room = std::int64_t(memory_.data() + memory_.size() - memory);
+  run_ = cw_load(system_.data(), std::int64_t(system_.size()), memory, room);
+  return run_ != nullptr || (refuse("these parameters do not fit the model: reset them"), false);
+}
+
+/// A run from its start, with everything that is set.
+bool Instance::load() {
+  if (now_.is_loaded) return true;
+  if (!put(now_.value)) return false;
+  for (const Option& option : model_.options) cw_set_option(run(), option.name.c_str(), option.value);
+  cw_set_option(run(), "t_start", now_.t_start);
+  if (now_.rtol > 0) cw_set_option(run(), "rtol", now_.rtol);
+  for (std::size_t k = 0; k < model_.variables.size(); ++k) {
+    const Variable& one = model_.variables[k];
+    if (one.kind != Kind::input || now_.value[k] == one.start) continue;
+    for (std::int64_t input : one.inputs) cw_set_input(run(), input, now_.value[k]);
+  }
+  cw_expect_inputs(run(), 1);
+  now_.loaded = now_.value;
+  now_.is_loaded = true;
+  is_seen_ = false;
+  return true;
+}
+
+// --------------------------------------------------------------------------------------------------------- variables
+
+const Variable* Instance::variable(std::uint32_t reference) const {
+  return reference < model_.variables.size() ? &model_.variables[reference] : nullptr;
+}
+
+Answer Instance::set(std::uint32_t reference, double value) {
+  const Variable* one = variable(reference);
+  if (one == nullptr) return refuse("there is no variable with the value reference " + std::to_string(reference));
+  const bool is_begun = now_.stage != Stage::instantiated && now_.stage != Stage::initialization;
+  if (!is_given(*one)) return refuse("'" + one->name + "' is a result, which cannot be set");
+  if (one->kind == Kind::fixed && is_begun)
+    return refuse("'" + one->name + "' is fixed once the run has begun: set it before, or reset the instance");
+  if (now_.stage == Stage::terminated) return refuse("the run is over: reset the instance");
+  if (!std::isfinite(value)) return say(Answer::discard, Category::error, "'" + one->name + "' must be a finite number");
+  if (value < one->least || value > one->most)
+    return say(Answer::discard, Category::error,
+               "'" + one->name + "' must be from " + number(one->least) + " to " + number(one->most) + ", not " +
+                   number(value));
+  if (one->kind == Kind::slope) return set_slope(std::uint32_t(one->of), int(one->order), value);
+  if (one->kind == Kind::input)
+    for (int order = 1; order <= orders; ++order) now_.slopes[orders * reference + std::size_t(order - 1)] = 0;
+  if (now_.value[reference] == value) return Answer::ok;
+  now_.value[reference] = value;
+  if (!is_begun) {
+    now_.is_loaded = is_seen_ = false;
+    return Answer::ok;
+  }
+  is_seen_ = false;
+  if (one->kind == Kind::tunable)
+    for (const Place& place : one->params) {
+      const double now = along(place, *one, 0, value);
+      cw_set_param(run(), place.number, now);
+    }
+  else
+    for (std::int64_t input : one->inputs) cw_set_input(run(), input, value);
+  return Answer::ok;
+}
+
+Answer Instance::get(std::uint32_t reference, double* value) {
+  const Variable* one = variable(reference);
+  if (one == nullptr) return refuse("there is no variable with the value reference " + std::to_string(reference));
+  if (one->kind == Kind::time) return *value = time(), Answer::ok;
+  if (one->kind == Kind::slope) {
+    *value = now_.slopes[std::size_t(orders * one->of + one->order - 1)];
+    return Answer::ok;
+  }
+  if (is_given(*one)) return *value = now_.value[reference], Answer::ok;
+  if (!is_seen_ && !look()) return Answer::error;
+  *value = model_.forms[std::size_t(one->of)](row_.data());
+  return Answer::ok;
+}
+
+Answer Instance::set_slope(std::uint32_t input, int order, double value) {
+  const Variable* one = variable(input);
+  if (one == nullptr || one->kind != Kind::input)
+    return refuse("only an input has derivatives, not the value reference " + std::to_string(input));
+  if (order < 1 || order > orders)
+    return refuse("derivatives of inputs are those of order 1 to 3, not " + std::to_string(order));
+  if (!std::isfinite(value)) return say(Answer::discard, Category::error, "a derivative must be a finite number");
+  now_.slopes[orders * input + std::size_t(order - 1)] = value;
+  return Answer::ok;
+}
+
+/// The row at the present time. Nothing of it stays: what was set is decided once, by what comes after.
+bool Instance::look() {
+  if (!load()) return false;
+  if (now_.stage == Stage::failed) return refuse("the run has stopped: reset the instance"), false;
+  const std::int64_t n = cw_copy(run(), before_.data(), std::int64_t(before_.size()));
+  const int status = cw_row(run(), row_.data());
+  if (status != int(Status::done)) refuse(told(status));
+  cw_paste(run(), before_.data(), n);
+  return is_seen_ = status == int(Status::done);
+}
+
+// -------------------------------------------------------------------------------------------------------------- steps
+
+void Instance::forget_slopes() { now_.slopes.assign(now_.slopes.size(), 0.0); }
+
+bool Instance::is_line(std::size_t input) const {
+  const double* slope = now_.slopes.data() + orders * input;
+  return slope[0] != 0 || slope[1] != 0 || slope[2] != 0;
+}
+
+/// Inputs over the coming step: lines where they have derivatives, else values.
+void Instance::give_inputs() {
+  const double start = cw_time(run());
+  for (std::size_t k = 0; k < model_.variables.size(); ++k) {
+    const Variable& one = model_.variables[k];
+    const bool line = one.kind == Kind::input && is_line(k);
+    if (!line && now_.on_line[k] == 0) continue;
+    const double* slope = now_.slopes.data() + orders * k;
+    const double polynomial[12] = {now_.value[k], slope[0], slope[1] / 2, slope[2] / 6};
+    for (std::int64_t input : one.inputs) {
+      if (line)
+        cw_set_segments(run(), input, &start, polynomial, 1);
+      else
+        cw_set_input(run(), input, now_.value[k]);
+    }
+    now_.on_line[k] = line ? 1 : 0;
+  }
+}
+
+/// Inputs with derivatives have moved on, and stay there until they are set again.
+void Instance::follow_slopes(double s) {
+  for (std::size_t k = 0; k < model_.variables.size(); ++k) {
+    if (model_.variables[k].kind != Kind::input || !is_line(k)) continue;
+    const double* slope = now_.slopes.data() + orders * k;
+    now_.value[k] += s * (slope[0] + s * (slope[1] / 2 + s * slope[2] / 6));
+  }
+}
+
+/// The budgets of the core count over the life of a run; here each step has its own.
+void Instance::give_budget() {
+  std::int64_t counts[n_statistics];
+  cw_statistics(run(), counts);
+  cw_set_option(run(), "max_steps", double(counts[0] + counts[1]) + step_budget);
+  cw_set_option(run(), "max_events", double(counts[4]) + event_budget);
+}
+
+Stepped Instance::step(double from, double size, bool may_return_early) {
+  if (now_.stage == Stage::failed) return {refuse("the run has stopped: reset the instance, or set it to a state")};
+  if (!std::isfinite(from) || !std::isfinite(size) || size < 0)
+    return {refuse("a step from " + number(from) + " s by " + number(size) + " s is no step")};
+  const double begin = cw_time(run());
+  if (std::fabs(from - begin) > round_off * (1 + std::fabs(from)))
+    return {refuse("the step begins at " + number(from) + " s, but the run is at " + number(begin) + " s")};
+  double end = from + size > begin ? from + size : begin;
+  give_inputs();
+  give_budget();
+  is_seen_ = false;
+  int status = int(Status::done);
+  bool is_early = false;
+  if (may_return_early) {
+    do {
+      take_events();
+      status = cw_advance_to_event(run(), end);
+    } while (status == int(Status::events_full));
+    is_early = status == int(Status::done) && cw_time(run()) < end;
+    if (is_early) end = cw_time(run());
+  }
+  std::int64_t filled = 0;
+  while (status == int(Status::done) && !is_early && filled == 0) {
+    take_events();
+    status = cw_advance(run(), end, &end, row_.data(), 1, 0, &filled);
+    is_seen_ = filled > 0;
+    if (status == int(Status::events_full)) status = int(Status::done);
+  }
+  take_events();
+  if (status != int(Status::done)) return {stop(status)};
+  follow_slopes(end - begin);
+  return {Answer::ok, is_early};
+}
+
+/// The run cannot go on.
+Answer Instance::stop(int status) {
+  now_.stage = Stage::failed;
+  is_seen_ = false;
+  return refuse(told(status));
+}
+
+/// Outputs as they are right after the present instant, with what inner signals do there.
+Answer Instance::show_right_limit() {
+  cw_expect_inputs(run(), 0);
+  is_seen_ = false;
+  const bool done = look();
+  cw_expect_inputs(run(), 1);
+  return done ? Answer::ok : Answer::error;
+}
+
+// ------------------------------------------------------------------------------------------------------------- states
+
+State* Instance::state() {
+  if (now_.is_loaded) {
+    now_.run.resize(memory_.size());
+    const std::int64_t n = cw_copy(run(), now_.run.data(), std::int64_t(now_.run.size()));
+    now_.run.resize(std::size_t(n));
+  }
+  auto* made = new State(now_);
+  now_.run.clear();
+  return made;
+}
+
+Answer Instance::go_to(const State& state) {
+  if (state.value.size() != now_.value.size()) return refuse("the state is that of another model");
+  const bool is_other = state.is_loaded && (!now_.is_loaded || state.loaded != now_.loaded);
+  const State before = now_;
+  now_ = state;
+  now_.run.clear();
+  is_seen_ = false;
+  if (is_other && !put(state.loaded)) return now_ = before, Answer::error;
+  if (state.is_loaded) cw_expect_inputs(run(), 1);
+  if (!state.is_loaded || cw_paste(run(), state.run.data(), std::int64_t(state.run.size())) != 0) return Answer::ok;
+  now_ = before;
+  now_.is_loaded = false;
+  return refuse("the state is that of another model");
+}
+
+namespace {
+
+constexpr std::uint64_t state_magic = 0x3145544154534d46u;  // FMSTATE1
+constexpr std::int64_t state_words = 8;
+
+std::uint64_t checksum(const unsigned char* bytes, std::int64_t n) {
+  std::uint64_t h = 0xcbf29ce484222325u;
+  for (std::int64_t i = 0; i < n; ++i) h = (h ^ bytes[i]) * 0x100000001b3u;
+  return h;
+}
+
+void append(std::vector<unsigned char>& to, const void* from, std::size_t n) {
+  const auto* bytes = static_cast<const unsigned char*>(from);
+  to.insert(to.end(), bytes, bytes + n);
+}
+
+}  // namespace
+
+/// magic, checksum of all after it, fingerprint of the token, stage, whether a run follows, t_start, rtol, number of
+/// values; values, loaded values, lines, derivatives, then the saved state of the core.
+std::vector<unsigned char> Instance::serialized(const State& state) {
+  std::vector<unsigned char> saved;
+  if (state.is_loaded) {
+    // a run of its own, so that this one stays
+    const State here = *std::unique_ptr<State>(this->state());
+    if (go_to(state) == Answer::ok) {
+      saved.resize(std::size_t(cw_state_size(run())));
+      cw_save(run(), saved.data(), std::int64_t(saved.size()));
+    }
+    go_to(here);
+  }
+  const auto& token = model_.token;
+  const std::uint64_t words[state_words] = {
+      state_magic, 0, checksum(reinterpret_cast<const unsigned char*>(token.data()), std::int64_t(token.size())),
+      std::uint64_t(state.stage), std::uint64_t(state.is_loaded), 0, 0, std::uint64_t(state.value.size())};
+  std::vector<unsigned char> made;
+  append(made, words, sizeof words);
+  std::memcpy(made.data() + 40, &state.t_start, 8), std::memcpy(made.data() + 48, &state.rtol, 8);
+  for (const auto* part : {&state.value, &state.loaded, &state.on_line, &state.slopes})
+    append(made, part->data(), 8 * part->size());
+  append(made, saved.data(), saved.size());
+  const std::uint64_t sum = checksum(made.data() + 16, std::int64_t(made.size()) - 16);
+  std::memcpy(made.data() + 8, &sum, 8);
+  return made;
+}
+
+State* Instance::deserialized(const unsigned char* bytes, std::int64_t n) {
+  const char* damaged = "the serialised state is damaged, or that of another model";
+  std::uint64_t words[state_words];
+  if (bytes == nullptr || n < std::int64_t(sizeof words)) return refuse(damaged), nullptr;
+  std::memcpy(words, bytes, sizeof words);
+  const auto& token = model_.token;
+  const bool is_own =
+      words[0] == state_magic && words[1] == checksum(bytes + 16, n - 16) &&
+      words[2] == checksum(reinterpret_cast<const unsigned char*>(token.data()), std::int64_t(token.size())) &&
+      words[3] <= std::uint64_t(Stage::failed) && words[4] <= 1 && words[7] == now_.value.size();
+  const auto count = std::int64_t(now_.value.size()), at = std::int64_t(sizeof words) + 8 * count * (3 + orders);
+  if (!is_own || n < at) return refuse(damaged), nullptr;
+  auto made = std::make_unique<State>();
+  made->stage = Stage(words[3]), made->is_loaded = words[4] == 1;
+  std::memcpy(&made->t_start, bytes + 40, 8), std::memcpy(&made->rtol, bytes + 48, 8);
+  const unsigned char* from = bytes + sizeof words;
+  for (auto* part : {&made->value, &made->loaded, &made->on_line, &made->slopes}) {
+    part->resize(std::size_t(part == &made->slopes ? orders * count : count));
+    std::memcpy(part->data(), from, 8 * part->size());
+    from += 8 * part->size();
+  }
+  for (std::size_t k = 0; k < made->loaded.size(); ++k) {
+    const Variable& one = model_.variables[k];
+    const bool fits = made->loaded[k] >= one.least && made->loaded[k] <= one.most;
+    if (is_given(one) && one.kind != Kind::slope && !fits) return refuse(damaged), nullptr;
+  }
+  if (!made->is_loaded) return made.release();
+  // read by a run of its own, of which it becomes a copy
+  const State here = *std::unique_ptr<State>(state());
+  const bool is_read = put(made->loaded) && cw_restore(run(), bytes + at, n - at) != 0;
+  if (is_read) {
+    made->run.resize(memory_.size());
+    made->run.resize(std::size_t(cw_copy(run(), made->run.data(), std::int64_t(made->run.size()))));
+  }
+  now_.is_loaded = false;
+  go_to(here);
+  return is_read ? made.release() : (refuse(damaged), nullptr);
+}
+
+}  // namespace clutchwork::fmi

@@ -1,0 +1,109 @@
+#pragma once
+#include <clutchwork/c_api.h>
+
+#include <memory>
+#include <string>
+#include <vector>
+#include "model.hpp"
+
+/// One instance of an FMU, as both versions of the standard see it. docs/guide/fmu.md
+namespace clutchwork::fmi {
+
+/// As the numbers of fmi2Status and fmi3Status.
+enum class Answer { ok, warning, discard, error, fatal };
+
+enum class Category { error, warning, events };
+inline constexpr int categories = 3;
+inline constexpr const char* category_names[categories] = {"error", "warning", "events"};
+
+/// What an importer does with a message.
+struct Listener {
+  void* who = nullptr;
+  void (*say)(void* who, Answer answer, const char* category, const char* text) = nullptr;
+};
+
+/// Where an instance is in its life.
+enum class Stage { instantiated, initialization, step, event, terminated, failed };
+
+/// Everything of an instance that a state holds.
+struct State {
+  Stage stage = Stage::instantiated;
+  bool is_loaded = false;
+  double t_start = 0;
+  double rtol = 0;              ///< 0: that of the model
+  std::vector<double> value;    ///< of all variables; those of signals are not used
+  std::vector<double> loaded;   ///< values with which the run was loaded
+  std::vector<double> on_line;  ///< 1 for an input that the core has as a line, else 0
+  std::vector<double> slopes;   ///< three of each variable: derivatives of an input over the coming step
+  std::vector<unsigned char> run;  ///< a copy of the run, where it is loaded
+};
+
+/// What a step did.
+struct Stepped {
+  Answer answer = Answer::ok;
+  bool is_early = false;
+};
+
+class Instance {
+ public:
+  /// The instance of a resource, or null with what is wrong in the log.
+  static Instance* make(const std::string& path, const char* token, Listener listener);
+
+  // what is in the log
+  Answer say(Answer answer, Category category, const std::string& text) const;
+  Answer refuse(const std::string& text) const { return say(Answer::error, Category::error, text); }
+  void log(bool on, Category category) { is_logged_[int(category)] = on; }
+
+  // life
+  Stage stage() const { return now_.stage; }
+  const Model& model() const { return model_; }
+  double time() const { return now_.is_loaded ? cw_time(run()) : now_.t_start; }
+  Answer experiment(double t_start, bool has_tolerance, double tolerance);
+  Answer initialize();
+  Answer enter(Stage stage);
+  void reset();
+
+  // variables by value reference
+  const Variable* variable(std::uint32_t reference) const;
+  Answer set(std::uint32_t reference, double value);
+  Answer get(std::uint32_t reference, double* value);
+  Answer set_slope(std::uint32_t input, int order, double value);
+
+  // steps; at an early return the run is right after an event
+  Stepped step(double from, double size, bool may_return_early);
+  void forget_slopes();
+  Answer show_right_limit();
+  double next_knot() const { return now_.is_loaded ? cw_next_knot(run()) : cw_next_knot(nullptr); }
+
+  // states
+  State* state();
+  Answer go_to(const State& state);
+  std::vector<unsigned char> serialized(const State& state);
+  State* deserialized(const unsigned char* bytes, std::int64_t n);
+
+ private:
+  explicit Instance(Listener listener) : listener_(listener) {}
+
+  cw_run* run() const { return run_; }
+  std::string told(int status) const;
+  bool load();
+  bool put(const std::vector<double>& values);
+  bool is_line(std::size_t input) const;
+  bool look();
+  void give_inputs();
+  void follow_slopes(double seconds);
+  void give_budget();
+  void take_events();
+  Answer stop(int status);
+
+  Listener listener_;
+  bool is_logged_[categories] = {true, true, false};
+  Model model_;
+  State now_;
+  std::vector<unsigned char> system_, memory_, before_;
+  std::vector<double> row_, events_;
+  cw_run* run_ = nullptr;
+  bool is_seen_ = false;  ///< the row is that of the present time
+};
+
+}  // namespace clutchwork::fmi

@@ -1,0 +1,112 @@
+"""Export a driveline as an FMU for co-simulation."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Sequence
+from pathlib import Path
+from tempfile import TemporaryDirectory
+from typing import TYPE_CHECKING, Any
+
+import clutchwork
+from clutchwork.assembly.system import System
+from clutchwork.base.errors import UseError
+from clutchwork.base.paths import fitting
+from clutchwork.base.quote import quote
+from clutchwork.codegen.sources import licence
+from clutchwork.declare.calls import explained
+from clutchwork.declare.options import Options
+from clutchwork.driveline.driveline import Driveline
+from clutchwork.fmu import archive
+from clutchwork.fmu.description import description
+from clutchwork.fmu.interface import Interface, interface, plain, warn_of
+from clutchwork.fmu.libraries import libraries
+from clutchwork.fmu.manual import manual
+from clutchwork.fmu.resource import resource
+from clutchwork.run.settings import merged
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping
+
+VERSIONS = ("2.0", "3.0")
+PICTURES = {"2.0": "model.png", "3.0": "terminalsAndIcons/icon.png"}
+
+
+@explained("cw.export_fmu", path="'car.fmu'")
+def export_fmu(
+    model: Driveline | System,
+    path: str | Path,
+    *,
+    inputs: Sequence[str] | str = (),
+    outputs: Sequence[str] | str | None = None,
+    parameters: Sequence[str] | str | None = None,
+    version: str = "2.0",
+    picture: bool = True,
+    t_end: float | None = None,
+    options: Options | None = None,
+    **changes: Any,
+) -> Path:
+    """Write a Driveline or a System as an FMU for co-simulation, which other simulators run; its path.
+
+    Use it to take a plant model into Simulink, a vehicle simulation or a test bench: it holds the compiled core and
+    needs neither Python nor a compiler. Contacts lock and break away inside of its steps as in `simulate`.
+
+    Parameters: inputs, names of signals that the other simulator sets, such as "c1.pressure"; outputs, names of
+    results, all by default; parameters, names of numbers that it may change, all that can be by default; version of
+    FMI, "2.0" or "3.0"; picture, whether the schematic goes with it, for which the extra `draw` is needed; t_end [s]
+    and options (rtol=, t_start= ...) as for `simulate`, by default those of the settings of the model. ModelError
+    names all that does not fit. Variables, units and how masters should set inputs: docs/guide/fmu.md.
+
+    Source: Functional Mock-up Interface 2.0.5 and 3.0.2, https://fmi-standard.org.
+    """
+    where = fitting("cw.export_fmu", path, "car.fmu", [".fmu"])
+    if not isinstance(model, Driveline | System):
+        raise UseError("cw.export_fmu", [f"model is {quote(model)}: give a Driveline or a System"])
+    if version not in VERSIONS:
+        raise UseError("cw.export_fmu", [f"version is {quote(version)}: give '2.0' or '3.0'"])
+    system = model.assemble() if isinstance(model, Driveline) else model
+    end, chosen = merged(system.settings, _with_end(system, changes, t_end), options)
+    wanted = [None if names is None else plain(names) for names in (outputs, parameters)]
+    made = interface(system, end, chosen, plain(inputs), *wanted)
+    warn_of(made)
+    return archive.write(where.with_suffix(".fmu"), _entries(made, where.stem, version, picture))
+
+
+def _with_end(system: System, changes: Mapping[str, Any], t_end: float | None) -> dict[str, Any]:
+    """What the call gives; an FMU has no end of its own, so that a second is as good as any."""
+    known = t_end if t_end is not None else system.settings.get("t_end")
+    begin = changes.get("t_start", system.settings.get("t_start", 0.0))
+    return {**changes, "t_end": known if known is not None else float(begin) + 1.0}
+
+
+def _entries(made: Interface, name: str, version: str, picture: bool) -> dict[str, bytes]:
+    """What is in the archive, by path."""
+    identifier, content = identifier_of(made.system.name or name), resource(made)
+    tool = f"clutchwork {clutchwork.__version__}"
+    entries = {
+        "modelDescription.xml": description(made, identifier, content.token, version, tool),
+        "resources/model.cw": content.content,
+        "documentation/index.html": manual(made, version),
+        "documentation/licenses/license.txt": licence(),
+    }
+    for library in libraries():
+        entries[f"binaries/{library.folders[version]}/{identifier}{library.ending}"] = library.path.read_bytes()
+    if picture and made.system.source is not None:
+        entries[PICTURES[version]] = _picture(made.system)
+    return entries
+
+
+def identifier_of(name: str) -> str:
+    """A name of the model that C and all file systems take."""
+    plain = re.sub(r"\W+", "_", name, flags=re.ASCII).strip("_")
+    return plain if re.match(r"[A-Za-z]", plain) else f"model_{plain}".rstrip("_")
+
+
+def _picture(system: System) -> bytes:
+    """The schematic."""
+    from clutchwork.driveline.draw import draw
+
+    with TemporaryDirectory() as folder:
+        path = Path(folder) / "model.png"
+        draw(system, path)
+        return path.read_bytes()

@@ -1,0 +1,179 @@
+"""What the library of an FMU reads: the System, its options and variables, and the words for its log, as bytes."""
+
+from __future__ import annotations
+
+import struct
+from collections.abc import Callable, Iterable, Sequence
+from hashlib import sha256
+from typing import Any, TypeVar
+
+from clutchwork.assembly.wiring import wiring
+from clutchwork.base.classes import dataclass
+from clutchwork.declare.core import core
+from clutchwork.declare.layout import CAUSES, MODES, STATUS
+from clutchwork.declare.schema import Role
+from clutchwork.fmu.interface import Interface
+from clutchwork.fmu.variables import Kind, Place, Variable
+from clutchwork.results.forms import Form
+from clutchwork.results.rows import numbers
+from clutchwork.run.failure import JAMS, covered, jam_of
+from clutchwork.run.simulation import acting
+
+MAGIC = b"CWFMU001"
+T = TypeVar("T")
+
+
+@dataclass(frozen=True)
+class Resource:
+    """Bytes of a resource, and the token that description and library compare."""
+
+    token: str
+    content: bytes
+
+
+class Writer:
+    """Numbers and strings one after another, as interfaces/fmi/reader.hpp reads them."""
+
+    def __init__(self) -> None:
+        self._parts: list[bytes] = []
+
+    def integer(self, value: int) -> None:
+        """A whole number."""
+        self._parts.append(struct.pack("<q", value))
+
+    def number(self, value: float) -> None:
+        """A number."""
+        self._parts.append(struct.pack("<d", value))
+
+    def bytes(self, data: bytes) -> None:
+        """Bytes with their number before them, filled up to a multiple of eight."""
+        self.integer(len(data))
+        self._parts.append(data + bytes(-len(data) % 8))
+
+    def text(self, value: str) -> None:
+        """A string."""
+        self.bytes(value.encode())
+
+    def each(self, items: Sequence[T], write: Callable[[T], Any]) -> None:
+        """Several, with their number before them."""
+        self.integer(len(items))
+        for item in items:
+            write(item)
+
+    def content(self) -> bytes:
+        """All of it."""
+        return b"".join(self._parts)
+
+
+def resource(made: Interface) -> Resource:
+    """The resource of an FMU. The same interface gives the same bytes."""
+    body = _body(made)
+    digest = sha256(body).hexdigest()
+    token = f"{{{digest[:8]}-{digest[8:12]}-{digest[12:16]}-{digest[16:20]}-{digest[20:32]}}}"
+    head = Writer()
+    head.integer(core().schema_hash())
+    head.text(token)
+    return Resource(token, MAGIC + head.content() + body)
+
+
+def _body(made: Interface) -> bytes:
+    system, to = made.system, Writer()
+    names = [name for name, _ in numbers(wiring(system))]
+    to.bytes(system.to_bytes())
+    to.integer(len(names))
+    to.number(made.options.t_start)
+    to.each(list(made.options.core_options().items()), lambda option: (to.text(option[0]), to.number(option[1])))
+    forms = [one.form for one in made.variables if one.form is not None]
+    places = {number: place for place, (number, _) in enumerate(made.of(Kind.SIGNAL, Kind.MODE))}
+    to.integer(len(made.variables))
+    for number, one in enumerate(made.variables):
+        _variable(to, one, places.get(number, one.of))
+    to.each(forms, lambda form: _form(to, form))
+    _parts(to, made)
+    to.each(names, to.text)
+    to.each([item.name for item in system.inputs], to.text)
+    to.each([part.name for part in (*system.processes, *system.flows)], to.text)
+    to.each(STATUS, lambda status: (to.text(status[1]), to.text(status[2])))
+    to.each([CAUSES[k][0] if k in CAUSES else "start" for k in range(max(CAUSES) + 1)], to.text)
+    to.each([MODES[k] for k in sorted(MODES)], to.text)
+    return to.content()
+
+
+def _variable(to: Writer, one: Variable, of: int) -> None:
+    to.integer(one.kind)
+    to.text(one.name)
+    for number in (one.start, *one.bounds):
+        to.number(number)
+    to.integer(of)
+    to.integer(1 if one.kind is Kind.SLOPE else 0)
+    to.each(one.inputs, to.integer)
+    to.each(one.words, lambda place: _place(to, place))
+    to.each(one.params, lambda place: _place(to, place))
+
+
+def _place(to: Writer, place: Place | tuple[int, float]) -> None:
+    to.integer(int(place[0]))
+    to.number(float(place[1]))
+
+
+def _parts(to: Writer, made: Interface) -> None:
+    """Elements, then contacts, as messages name them."""
+    elements = len(wiring(made.system).elements)
+    to.integer(elements)
+    everything = acting(made.system)
+    to.integer(len(everything))
+    for number, part in enumerate(everything):
+        jams = part.role is Role.CONTACT or number in made.system.transmission_element.tolist()
+        jam = JAMS[jam_of(made.system, part, number)] if jams else ("", "")
+        to.text(part.name)
+        to.text(covered(part) if part.role is Role.CONTACT and part.friction is not None else "")
+        to.text(jam[0])
+        to.text(jam[1] or (STATUS[_jammed()][2] if jam[0] else ""))
+
+
+def _jammed() -> int:
+    return next(number for number, status in enumerate(STATUS) if status[0] == "jammed")
+
+
+# ------------------------------------------------------------------------------------------------------------- signals
+
+
+def _form(to: Writer, form: Form) -> None:
+    """A signal as a sum of terms: a combination of numbers of the row, or the product of two."""
+    to.each(list(_terms(form.data())), lambda term: _term(to, *term))
+
+
+def _terms(data: Sequence[Any]) -> Iterable[tuple[Any, Any, int]]:
+    """Terms of a form from what `Form.data` says: (combination, other one or None, place of the mode that gates)."""
+    kind, *rest = data
+    if kind == "q":
+        for part in rest[0]:
+            yield from _terms(part)
+    elif kind == "p":
+        (one, _, _), (other, _, gate) = (next(iter(_terms(part))) for part in rest)
+        yield one, other, gate
+    elif kind == "s":
+        yield from ((one, None, rest[1]) for one, _, _ in _terms(rest[0]))
+    else:
+        yield _combination(kind, rest), None, -1
+
+
+def _combination(kind: str, rest: Sequence[Any]) -> tuple[float | None, list[tuple[int, float]]]:
+    """Offset and shares of numbers of the row."""
+    if kind == "c":
+        return None, [(rest[0], 1.0)]
+    if kind == "a":
+        place, scale, offset = rest
+        return offset, [(place, scale)]
+    if kind == "t":
+        return None, [(place, -1.0 if rest[1] else 1.0) for place in rest[0]]
+    return None, list(zip(*rest, strict=True))
+
+
+def _term(to: Writer, one: Any, other: Any, gate: int) -> None:
+    to.integer(gate)
+    to.integer(0 if other is None else 1)
+    for offset, shares in (one, other or (None, [])):
+        to.integer(0 if offset is None else 1)
+        to.number(offset or 0.0)
+        to.each(shares, lambda place: _place(to, place))

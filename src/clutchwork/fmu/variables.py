@@ -1,0 +1,55 @@
+"""The variables of an FMU: what is set from outside, what may be changed, what is computed."""
+
+from __future__ import annotations
+
+from dataclasses import field
+from enum import IntEnum
+from math import inf
+from typing import NamedTuple
+
+from clutchwork.base.classes import dataclass
+from clutchwork.results.forms import Form
+
+
+class Kind(IntEnum):
+    """What a variable is, by the number that the library knows it by."""
+
+    TIME = 0
+    INPUT = 1
+    SLOPE = 2
+    TUNABLE = 3
+    FIXED = 4
+    SIGNAL = 5
+    MODE = 6
+
+
+class Place(NamedTuple):
+    """A number that follows a value along a straight line; a slope that is not a number: it is the value itself."""
+
+    number: int
+    slope: float
+
+
+@dataclass(frozen=True)
+class Variable:
+    """One variable; its value reference is its place among all."""
+
+    name: str
+    kind: Kind
+    unit: str
+    start: float = 0.0
+    bounds: tuple[float, float] = (-inf, inf)
+    about: str = ""
+    of: int = -1  # value reference of the input that a slope belongs to
+    inputs: tuple[int, ...] = ()  # numbers in the core
+    words: tuple[Place, ...] = ()  # of the bytes of the System
+    params: tuple[Place, ...] = ()  # of the pool of parameters
+    form: Form | None = field(default=None, repr=False)
+    follows_states: bool = False  # an output that no input moves at once
+
+
+class LeftOut(NamedTuple):
+    """A parameter that the FMU does not have, and why."""
+
+    name: str
+    why: str
