@@ -21,7 +21,16 @@ from clutchwork.signals.bases.waveform import value as value_at
 from clutchwork.stepping.signals import Settable, signals
 
 # sections of a row that no input moves at once, where no speed is prescribed
-OF_STATES = ("speed", "angle", "state", "element_work", "contact_work", "prescribed_work", "supply_energy", "meter_energy")
+OF_STATES = (
+    "speed",
+    "angle",
+    "state",
+    "element_work",
+    "contact_work",
+    "prescribed_work",
+    "supply_energy",
+    "meter_energy",
+)
 MODE = "mode of the contact: -1 slips backward, 0 locked, 1 slips forward, 2 open"
 
 

@@ -33,7 +33,10 @@ def manual(made: Interface, version: str) -> bytes:
         head = ("name", "unit", "start", "from", "to", "kind", "meaning")
         parts += [html.heading(title), html.table(head, map(_line, known), most=len(known))]
     if made.left_out:
-        parts += [html.heading("Numbers that are no parameters"), html.table(("name", "why"), made.left_out, most=len(made.left_out))]
+        parts += [
+            html.heading("Numbers that are no parameters"),
+            html.table(("name", "why"), made.left_out, most=len(made.left_out)),
+        ]
     body = html.page(*parts)
     title = f"<title>{html.text(made.system.name)}</title>"
     head = f'<!DOCTYPE html>\n<html lang="en"><head><meta charset="utf-8">{title}</head>'

@@ -1,0 +1,86 @@
+"""Parameters of an FMU are those of the driveline: as if it had been assembled with them."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+import pytest
+
+import clutchwork as cw
+from fmu.conftest import INPUTS, SIX_SPEED
+from support.fmus import Fmu
+
+SEEN = ["w1.speed", "w8.speed", "F2.heat", "shaft.torque"]
+START = {"F1.pressure": 2e5, "F2.pressure": 6e5, "F4.pressure": 8e5, "load.torque": 1000.0}
+
+
+def parameters(fmu: Fmu, variability: str) -> dict[str, Any]:
+    """Parameters of a kind by name."""
+    return {n: v for n, v in fmu.variables.items() if v.causality == "parameter" and v.variability == variability}
+
+
+def test_the_six_speed_gearbox_has_all_that_follows_straight_lines(six_speed: Fmu) -> None:
+    tunable, fixed = parameters(six_speed, "tunable"), parameters(six_speed, "fixed")
+    assert {"shaft.damping", "F1.gain", "F6.friction.static", "engine.gain"} <= set(tunable)
+    assert {"w1.inertia", "w8.inertia", "w1.speed_start", "shaft.stiffness", "shaft.initial_twist"} <= set(fixed)
+    assert not [name for name in six_speed.variables if name.endswith(".ratio")]
+
+
+def test_every_parameter_acts_as_an_assembly_with_it(six_speed: Fmu) -> None:
+    """Tunable ones to the bit; fixed ones within the round-off of sums of inertias, which a stiff shaft makes 1e-9."""
+    system = cw.Driveline.load(SIX_SPEED).assemble()
+    plain = cw.System.of(system.source, system.independent).changed({**dict.fromkeys(INPUTS, 0.0), **START})
+    for kind in ("tunable", "fixed"):
+        for name, one in parameters(six_speed, kind).items():
+            value = 1.1 * float(one.start) or 0.01
+            sim = cw.Simulator(plain.changed({name.removesuffix("_start"): value}))
+            sim.advance(0.2)
+            with six_speed.running({**START, name: value}) as run:
+                run.step(0.0, 0.2)
+                got = np.array(run.get(SEEN))
+            want = np.array([sim[signal] for signal in SEEN])
+            scale = np.maximum(np.abs(want), 1.0)
+            assert np.all(np.abs(got - want) <= (0.0 if kind == "tunable" else 1e-8) * scale), name
+
+
+def test_tunable_parameters_change_while_it_runs(six_speed: Fmu) -> None:
+    sim = cw.Simulator(cw.Driveline.load(SIX_SPEED).assemble().changed({**dict.fromkeys(INPUTS, 0.0), **START}))
+    with six_speed.running(START) as run:
+        for k, gain in enumerate((0.05, 0.06, 0.07)):
+            sim.set("F2.gain", gain)
+            run.set("F2.gain", gain)
+            sim.advance_to(0.1 * (k + 1))
+            run.step(0.1 * k, 0.1 * (k + 1) - 0.1 * k)
+            assert run.get(SEEN) == [sim[name] for name in SEEN]
+
+
+def test_fixed_parameters_and_results_cannot_be_set_later(six_speed: Fmu) -> None:
+    run = six_speed.instance()
+    run.begin(START)
+    for name in ("w8.inertia", "w8.speed"):
+        with pytest.raises(Exception, match=r"status 3|Error"):
+            run.set(name, 1.0)
+        assert name in run.messages[-1][2]
+    run.free()
+
+
+def test_what_does_not_fit_is_refused_at_once_with_the_reason(tmp_path: Any) -> None:
+    driveline = cw.Driveline.load(SIX_SPEED)
+    with pytest.raises(cw.ModelError, match=r"F1.presure.*F1.pressure"):
+        driveline.to_fmu(tmp_path / "a.fmu", inputs=["F1.presure"])
+    with pytest.raises(cw.ModelError, match="straight line"):
+        driveline.to_fmu(tmp_path / "a.fmu", parameters=["row1.ratio"])
+    with pytest.raises(cw.ModelError, match=r"F1.state.*F1.mode"):
+        driveline.to_fmu(tmp_path / "a.fmu", outputs=["F1.state"])
+    with pytest.raises(cw.UseError, match=r"2\.0"):
+        driveline.to_fmu(tmp_path / "a.fmu", version="1.0")
+
+
+def test_a_prescribed_speed_is_warned_of(tmp_path: Any) -> None:
+    driveline = cw.Driveline("rig")
+    engine, load = driveline.shaft("engine"), driveline.shaft("load", inertia=1.0)
+    driveline.add(cw.PrescribedSpeed("source", shaft=engine, speed=10.0))
+    driveline.add(cw.SpringDamper("shaft", base=engine, follower=load, stiffness=100.0, damping=1.0))
+    with pytest.warns(cw.ModelWarning, match="rate"):
+        driveline.to_fmu(tmp_path / "a.fmu", inputs=["source.speed"], picture=False)
