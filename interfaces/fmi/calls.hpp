@@ -14,8 +14,8 @@ inline constexpr unsigned any_stage = ~0u;
 inline constexpr unsigned before_steps = in(Stage::instantiated, Stage::initialization);
 inline constexpr unsigned running = in(Stage::step, Stage::event);
 
-inline constexpr const char* stage_names[] = {"instantiated", "in initialization mode", "in step mode",
-                                              "in event mode", "terminated", "stopped by an error"};
+inline constexpr const char* stage_names[] = {"instantiated", "in initialization mode", "in step mode", "in event mode",
+                                              "terminated",   "stopped by an error"};
 
 /// Answers a call if it may be made now.
 template <class Deed>

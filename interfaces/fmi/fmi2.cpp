@@ -96,9 +96,9 @@ FMI_EXPORT int fmi2SetDebugLogging(void* c, int on, std::size_t n, const char* c
 
 FMI_EXPORT void* fmi2Instantiate(const char* name, int type, const char* guid, const char* location,
                                  const Callbacks* callbacks, int, int logging) {
-  auto* made = new Component{callbacks != nullptr ? callbacks->logger : nullptr,
-                             callbacks != nullptr ? callbacks->environment : nullptr, name != nullptr ? name : "",
-                             nullptr};
+  auto* made =
+      new Component{callbacks != nullptr ? callbacks->logger : nullptr,
+                    callbacks != nullptr ? callbacks->environment : nullptr, name != nullptr ? name : "", nullptr};
   const Listener listener{made, say};
   if (type == 1) {
     made->instance = Instance::make(resource_path(location), guid, listener);
@@ -135,8 +135,7 @@ FMI_EXPORT int fmi2ExitInitializationMode(void* c) {
 }
 
 FMI_EXPORT int fmi2Terminate(void* c) {
-  return int(
-      allowed(of(c), running, "fmi2Terminate", [&](Instance& it) { return it.enter(Stage::terminated); }));
+  return int(allowed(of(c), running, "fmi2Terminate", [&](Instance& it) { return it.enter(Stage::terminated); }));
 }
 
 FMI_EXPORT int fmi2Reset(void* c) {

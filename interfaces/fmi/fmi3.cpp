@@ -34,9 +34,8 @@ Instance* of(void* c) { return c == nullptr ? nullptr : static_cast<Component*>(
 
 /// A call that no variable of these FMUs has a use for; nothing asked is no error.
 int none(void* c, const char* call, std::size_t n, const char* why) {
-  return int(allowed(of(c), any_stage, call, [&](Instance& it) {
-    return n == 0 ? Answer::ok : it.refuse(std::string(call) + ": " + why);
-  }));
+  return int(allowed(of(c), any_stage, call,
+                     [&](Instance& it) { return n == 0 ? Answer::ok : it.refuse(std::string(call) + ": " + why); }));
 }
 
 constexpr const char* no_type = "no variable of this FMU has that type";
@@ -45,7 +44,8 @@ constexpr const char* no_clocks = "this FMU has no clocks";
 constexpr const char* no_derivatives = "this FMU gives no derivatives";
 
 template <class X>
-int get(void* c, const char* call, bool whole, const Reference* references, std::size_t n, X* values, std::size_t room) {
+int get(void* c, const char* call, bool whole, const Reference* references, std::size_t n, X* values,
+        std::size_t room) {
   return int(allowed(of(c), any_stage & ~in(Stage::instantiated), call, [&](Instance& it) {
     if (n > 0 && (references == nullptr || values == nullptr || room < n))
       return it.refuse(std::string(call) + " has no room for the values");
@@ -132,12 +132,12 @@ FMI_EXPORT int fmi3EnterEventMode(void* c) {
 }
 
 FMI_EXPORT int fmi3EnterStepMode(void* c) {
-  return int(allowed(of(c), in(Stage::event), "fmi3EnterStepMode", [&](Instance& it) { return it.enter(Stage::step); }));
+  return int(
+      allowed(of(c), in(Stage::event), "fmi3EnterStepMode", [&](Instance& it) { return it.enter(Stage::step); }));
 }
 
 FMI_EXPORT int fmi3Terminate(void* c) {
-  return int(
-      allowed(of(c), running, "fmi3Terminate", [&](Instance& it) { return it.enter(Stage::terminated); }));
+  return int(allowed(of(c), running, "fmi3Terminate", [&](Instance& it) { return it.enter(Stage::terminated); }));
 }
 
 FMI_EXPORT int fmi3Reset(void* c) {
@@ -224,10 +224,12 @@ FMI_EXPORT int fmi3SetString(void* c, const Reference*, std::size_t n, const cha
 FMI_EXPORT int fmi3SetInt32(void* c, const Reference*, std::size_t n, const std::int32_t*, std::size_t) {
   return none(c, "fmi3SetInt32", n, no_type);
 }
-FMI_EXPORT int fmi3GetBinary(void* c, const Reference*, std::size_t n, std::size_t*, const std::uint8_t**, std::size_t) {
+FMI_EXPORT int fmi3GetBinary(void* c, const Reference*, std::size_t n, std::size_t*, const std::uint8_t**,
+                             std::size_t) {
   return none(c, "fmi3GetBinary", n, no_type);
 }
-FMI_EXPORT int fmi3SetBinary(void* c, const Reference*, std::size_t n, const std::size_t*, const std::uint8_t* const*, std::size_t) {
+FMI_EXPORT int fmi3SetBinary(void* c, const Reference*, std::size_t n, const std::size_t*, const std::uint8_t* const*,
+                             std::size_t) {
   return none(c, "fmi3SetBinary", n, no_type);
 }
 FMI_EXPORT int fmi3GetClock(void* c, const Reference*, std::size_t n, bool*) {
@@ -254,13 +256,15 @@ FMI_EXPORT int fmi3GetShiftFraction(void* c, const Reference*, std::size_t n, st
 FMI_EXPORT int fmi3SetIntervalDecimal(void* c, const Reference*, std::size_t n, const double*) {
   return none(c, "fmi3SetIntervalDecimal", n, no_clocks);
 }
-FMI_EXPORT int fmi3SetIntervalFraction(void* c, const Reference*, std::size_t n, const std::uint64_t*, const std::uint64_t*) {
+FMI_EXPORT int fmi3SetIntervalFraction(void* c, const Reference*, std::size_t n, const std::uint64_t*,
+                                       const std::uint64_t*) {
   return none(c, "fmi3SetIntervalFraction", n, no_clocks);
 }
 FMI_EXPORT int fmi3SetShiftDecimal(void* c, const Reference*, std::size_t n, const double*) {
   return none(c, "fmi3SetShiftDecimal", n, no_clocks);
 }
-FMI_EXPORT int fmi3SetShiftFraction(void* c, const Reference*, std::size_t n, const std::uint64_t*, const std::uint64_t*) {
+FMI_EXPORT int fmi3SetShiftFraction(void* c, const Reference*, std::size_t n, const std::uint64_t*,
+                                    const std::uint64_t*) {
   return none(c, "fmi3SetShiftFraction", n, no_clocks);
 }
 FMI_EXPORT int fmi3ActivateModelPartition(void* c, Reference, double) {
@@ -274,18 +278,20 @@ FMI_EXPORT int fmi3GetNumberOfVariableDependencies(void* c, Reference, std::size
     return it.refuse("fmi3GetNumberOfVariableDependencies: see the model description");
   }));
 }
-FMI_EXPORT int fmi3GetVariableDependencies(void* c, Reference, std::size_t*, Reference*, std::size_t*, int*, std::size_t) {
+FMI_EXPORT int fmi3GetVariableDependencies(void* c, Reference, std::size_t*, Reference*, std::size_t*, int*,
+                                           std::size_t) {
   return none(c, "fmi3GetVariableDependencies", 1, "see the model description");
 }
-FMI_EXPORT int fmi3GetDirectionalDerivative(void* c, const Reference*, std::size_t, const Reference*, std::size_t, const double*, std::size_t, double*,
-                               std::size_t) {
+FMI_EXPORT int fmi3GetDirectionalDerivative(void* c, const Reference*, std::size_t, const Reference*, std::size_t,
+                                            const double*, std::size_t, double*, std::size_t) {
   return none(c, "fmi3GetDirectionalDerivative", 1, no_derivatives);
 }
-FMI_EXPORT int fmi3GetAdjointDerivative(void* c, const Reference*, std::size_t, const Reference*, std::size_t, const double*, std::size_t, double*,
-                               std::size_t) {
+FMI_EXPORT int fmi3GetAdjointDerivative(void* c, const Reference*, std::size_t, const Reference*, std::size_t,
+                                        const double*, std::size_t, double*, std::size_t) {
   return none(c, "fmi3GetAdjointDerivative", 1, no_derivatives);
 }
-FMI_EXPORT int fmi3GetOutputDerivatives(void* c, const Reference*, std::size_t n, const std::int32_t*, double*, std::size_t) {
+FMI_EXPORT int fmi3GetOutputDerivatives(void* c, const Reference*, std::size_t n, const std::int32_t*, double*,
+                                        std::size_t) {
   return none(c, "fmi3GetOutputDerivatives", n, no_derivatives);
 }
 
@@ -313,15 +319,11 @@ FMI_EXPORT int fmi3UpdateDiscreteStates(void* c, bool* again, bool* terminate, b
   }));
 }
 
-FMI_EXPORT int fmi3EnterContinuousTimeMode(void* c) {
-  return none(c, "fmi3EnterContinuousTimeMode", 1, no_exchange);
-}
+FMI_EXPORT int fmi3EnterContinuousTimeMode(void* c) { return none(c, "fmi3EnterContinuousTimeMode", 1, no_exchange); }
 FMI_EXPORT int fmi3CompletedIntegratorStep(void* c, bool, bool*, bool*) {
   return none(c, "fmi3CompletedIntegratorStep", 1, no_exchange);
 }
-FMI_EXPORT int fmi3SetTime(void* c, double) {
-  return none(c, "fmi3SetTime", 1, no_exchange);
-}
+FMI_EXPORT int fmi3SetTime(void* c, double) { return none(c, "fmi3SetTime", 1, no_exchange); }
 FMI_EXPORT int fmi3SetContinuousStates(void* c, const double*, std::size_t) {
   return none(c, "fmi3SetContinuousStates", 1, no_exchange);
 }

@@ -200,7 +200,8 @@ Answer Instance::set(std::uint32_t reference, double value) {
   if (one->kind == Kind::fixed && is_begun)
     return refuse("'" + one->name + "' is fixed once the run has begun: set it before, or reset the instance");
   if (now_.stage == Stage::terminated) return refuse("the run is over: reset the instance");
-  if (!std::isfinite(value)) return say(Answer::discard, Category::error, "'" + one->name + "' must be a finite number");
+  if (!std::isfinite(value))
+    return say(Answer::discard, Category::error, "'" + one->name + "' must be a finite number");
   if (value < one->least || value > one->most)
     return say(Answer::discard, Category::error,
                "'" + one->name + "' must be from " + number(one->least) + " to " + number(one->most) + ", not " +
@@ -417,8 +418,14 @@ std::vector<unsigned char> Instance::serialized(const State& state) {
   }
   const auto& token = model_.token;
   const std::uint64_t words[state_words] = {
-      state_magic, 0, checksum(reinterpret_cast<const unsigned char*>(token.data()), std::int64_t(token.size())),
-      std::uint64_t(state.stage), std::uint64_t(state.is_loaded), 0, 0, std::uint64_t(state.value.size())};
+      state_magic,
+      0,
+      checksum(reinterpret_cast<const unsigned char*>(token.data()), std::int64_t(token.size())),
+      std::uint64_t(state.stage),
+      std::uint64_t(state.is_loaded),
+      0,
+      0,
+      std::uint64_t(state.value.size())};
   std::vector<unsigned char> made;
   append(made, words, sizeof words);
   std::memcpy(made.data() + 40, &state.t_start, 8), std::memcpy(made.data() + 48, &state.rtol, 8);

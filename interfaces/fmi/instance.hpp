@@ -30,11 +30,11 @@ struct State {
   Stage stage = Stage::instantiated;
   bool is_loaded = false;
   double t_start = 0;
-  double rtol = 0;              ///< 0: that of the model
-  std::vector<double> value;    ///< of all variables; those of signals are not used
-  std::vector<double> loaded;   ///< values with which the run was loaded
-  std::vector<double> on_line;  ///< 1 for an input that the core has as a line, else 0
-  std::vector<double> slopes;   ///< three of each variable: derivatives of an input over the coming step
+  double rtol = 0;                 ///< 0: that of the model
+  std::vector<double> value;       ///< of all variables; those of signals are not used
+  std::vector<double> loaded;      ///< values with which the run was loaded
+  std::vector<double> on_line;     ///< 1 for an input that the core has as a line, else 0
+  std::vector<double> slopes;      ///< three of each variable: derivatives of an input over the coming step
   std::vector<unsigned char> run;  ///< a copy of the run, where it is loaded
 };
 

@@ -19,8 +19,8 @@ struct Variable {
   Kind kind;
   std::string name;
   double start, least, most;
-  std::int64_t of;    ///< a slope: its input; a signal or mode: its form
-  std::int64_t order;  ///< of a slope
+  std::int64_t of;                   ///< a slope: its input; a signal or mode: its form
+  std::int64_t order;                ///< of a slope
   std::vector<std::int64_t> inputs;  ///< numbers in the core
   std::vector<Place> words;          ///< before a run
   std::vector<Place> params;         ///< during one

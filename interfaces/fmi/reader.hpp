@@ -3,7 +3,8 @@
 #include <cstring>
 #include <string>
 
-/// Bytes that are read one thing after another. After the first thing that does not fit everything read is zero or empty.
+/// Bytes that are read one thing after another. After the first thing that does not fit everything read is zero or
+/// empty.
 namespace clutchwork::fmi {
 
 class Reader {

@@ -94,7 +94,7 @@ def test_locked_slip_is_zero(six_speed: Fmu) -> None:
 
 
 @pytest.mark.parametrize(
-    "name, bad", [("F1.gain", -1.0), ("F1.gain", np.nan), ("shaft.damping", -1e30), ("F1.pressure", np.inf)]
+    ("name", "bad"), [("F1.gain", -1.0), ("F1.gain", np.nan), ("shaft.damping", -1e30), ("F1.pressure", np.inf)]
 )
 def test_values_out_of_bounds_change_nothing(six_speed: Fmu, name: str, bad: float) -> None:
     """A sentence in the log, and the value stays."""

@@ -38,6 +38,8 @@ Reach = Mapping[str, Places]
 
 # by so much of their scale numbers are moved; those at a bound go to one side alone
 PROBES = (1e-3, -1.7e-3, 2.3e-3, -2.9e-3)
+# and by so much where it is asked whether what follows is a straight line
+FAR = (-1.0, -0.5, 0.5, 1.0)
 # values of signals, of which some fit any
 LEVELS = (1.0, 0.5, 300.0, 0.0, -1.0)
 # arrays that hold signals alone
@@ -103,6 +105,25 @@ class SystemParameter:
             return OTHER
         return stays(self._system, self._system, self._beside) or (None if self.reach else NOTHING)
 
+    @cached_property
+    def slopes(self) -> NDArray[np.float64] | None:
+        """Derivatives of its words where all of them are straight lines over its value; None elsewhere."""
+        if self.derivative is not None:
+            return self.derivative
+        system, value = self._system, float(self.value)
+        low, high = self.bounds
+        far = [value + share * (abs(value) or 1.0) for share in FAR]
+        made = [(x, new) for x in far if low < x < high and (new := _changed(system, self.name, x)) is not None]
+        is_real = all(_is_real(system, array) for array in self.reach)
+        if not is_real or len(made) < 2 or any(differing(system, new) is None for _, new in made):
+            return None
+        base = _words(system)
+        found = np.array([(_words(new) - base) / (x - value) for x, new in made])
+        # the last digits of words are round-off
+        straight = np.allclose(found, found[0], rtol=1e-12, atol=1e-14 * np.max(np.abs(found)))
+        moved = np.flatnonzero(found[0])
+        return found[0][moved] if straight and np.array_equal(moved, self.words) else None
+
     @property
     def when(self) -> str:
         """When it may change: "during a run" or "before a run"."""
@@ -112,28 +133,6 @@ class SystemParameter:
         """Whether with another value its words are that, and nothing else changes."""
         made = _changed(self._system, self.name, value)
         return made is not None and _is_value(made, differing(self._system, made), self.reach, value)
-
-
-def straight_lines(parameter: SystemParameter) -> NDArray[np.float64] | None:
-    """Derivatives of the words of a number where all of them are straight lines over it; None elsewhere."""
-    system, name, value = parameter._system, parameter.name, float(parameter.value)
-    if parameter.derivative is not None:
-        return parameter.derivative
-    if not all(_is_real(system, array) for array in parameter.reach):
-        return None
-    low, high = parameter.bounds
-    scale = abs(value) or 1.0
-    far = [x for x in (value - scale, value - 0.5 * scale, value + 0.5 * scale, value + scale) if low < x < high]
-    made = [(x, new) for x in far if (new := _changed(system, name, x)) is not None]
-    if len(made) < 2 or any(differing(system, new) is None for _, new in made):
-        return None
-    base = _words(system)
-    slopes = [(_words(new) - base) / (x - value) for x, new in made]
-    moved = np.flatnonzero(slopes[0])
-    size = np.max(np.abs(slopes), axis=0)
-    straight = all(np.allclose(slope, slopes[0], rtol=1e-12, atol=1e-14 * size.max()) for slope in slopes)
-    is_whole = np.array_equal(moved, parameter.words)
-    return slopes[0][moved] if straight and is_whole else None
 
 
 class SystemParameters(Mapping[str, SystemParameter]):

@@ -1,4 +1,4 @@
-"""FMUs of drivelines: archives that other simulators run, with the core inside; neither compiler nor Python is needed."""
+"""FMUs of drivelines: archives that other simulators run, with the compiled core inside."""
 
 from __future__ import annotations
 

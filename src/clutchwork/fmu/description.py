@@ -8,7 +8,7 @@ from xml.etree.ElementTree import Element, SubElement, indent, tostring
 
 from clutchwork.fmu.interface import Interface
 from clutchwork.fmu.units import add_units, unit_attributes
-from clutchwork.fmu.variables import Kind, Variable
+from clutchwork.fmu.variables import FmuVariable, VariableKind
 
 CATEGORIES = (
     ("error", "why a call failed"),
@@ -34,7 +34,8 @@ def description(made: Interface, identifier: str, token: str, version: str, tool
         root.set("numberOfEventIndicators", "0")
     (_add_three if version == "3.0" else _add_two)(root, made, identifier)
     indent(root)
-    return b'<?xml version="1.0" encoding="UTF-8"?>\n' + tostring(root, encoding="utf-8") + b"\n"
+    content: bytes = tostring(root, encoding="utf-8")
+    return b'<?xml version="1.0" encoding="UTF-8"?>\n' + content + b"\n"
 
 
 def is_ascii(name: str) -> bool:
@@ -43,7 +44,7 @@ def is_ascii(name: str) -> bool:
 
 
 def structured(name: str) -> str:
-    """A name in the structured convention of FMI: words that are no identifiers are quoted."""
+    """A name in the structured convention of FMI: words that are not identifiers are quoted."""
     inside = re.fullmatch(r"der\((.*)\)", name)
     if inside:
         return f"der({structured(inside[1])})"
@@ -76,36 +77,41 @@ def _categories(root: Element) -> None:
         SubElement(found, "Category", name=name, description=words)
 
 
-def _common(one: Variable, number: int) -> dict[str, str]:
+def _common(one: FmuVariable, number: int) -> dict[str, str]:
     found = {"name": structured(one.name), "valueReference": str(number)}
     return found | ({"description": one.about} if one.about else {})
 
 
-def _role(one: Variable) -> dict[str, str]:
+def _role(one: FmuVariable) -> dict[str, str]:
     """Causality, variability and initial value of a variable."""
-    if one.kind in (Kind.INPUT, Kind.SLOPE):
+    if one.kind in (VariableKind.INPUT, VariableKind.SLOPE):
         return {"causality": "input", "variability": "continuous"}
-    if one.kind is Kind.TUNABLE:
+    if one.kind is VariableKind.TUNABLE:
         return {"causality": "parameter", "variability": "tunable", "initial": "exact"}
-    if one.kind is Kind.FIXED:
+    if one.kind is VariableKind.FIXED:
         return {"causality": "parameter", "variability": "fixed", "initial": "exact"}
-    if one.kind is Kind.TIME:
+    if one.kind is VariableKind.TIME:
         return {"causality": "independent", "variability": "continuous"}
-    variability = "discrete" if one.kind is Kind.MODE else "continuous"
+    variability = "discrete" if one.kind is VariableKind.MODE else "continuous"
     return {"causality": "output", "variability": variability, "initial": "calculated"}
 
 
-def _number(one: Variable) -> dict[str, str]:
+def _number(one: FmuVariable) -> dict[str, str]:
     """Unit, bounds and start."""
-    if one.kind is Kind.MODE:
+    if one.kind is VariableKind.MODE:
         return {"min": "-1", "max": "2"}
     bounds = {name: repr(value) for name, value in zip(("min", "max"), one.bounds, strict=True) if isfinite(value)}
-    given = one.kind in (Kind.INPUT, Kind.SLOPE, Kind.TUNABLE, Kind.FIXED)
+    given = one.kind in (VariableKind.INPUT, VariableKind.SLOPE, VariableKind.TUNABLE, VariableKind.FIXED)
     return unit_attributes(one.unit) | bounds | ({"start": repr(one.start)} if given else {})
 
 
+def _dependencies(one: FmuVariable, is_output: bool) -> dict[str, str]:
+    """What an output that follows from states says: importers then see no algebraic loop."""
+    return {"dependencies": ""} if one.follows_states and is_output else {}
+
+
 def _units(made: Interface) -> list[str]:
-    return [one.unit for one in made.variables if one.kind is not Kind.MODE]
+    return [one.unit for one in made.variables if one.kind is not VariableKind.MODE]
 
 
 # ------------------------------------------------------------------------------------------------------------- FMI 2.0
@@ -126,18 +132,19 @@ def _add_two(root: Element, made: Interface, identifier: str) -> None:
     add_units(root, _units(made))
     _categories(root)
     _experiment(root, made)
-    listed = [(n, one) for n, one in enumerate(made.variables) if one.kind not in (Kind.TIME, Kind.SLOPE)]
+    listed = [
+        (n, one) for n, one in enumerate(made.variables) if one.kind not in (VariableKind.TIME, VariableKind.SLOPE)
+    ]
     variables = SubElement(root, "ModelVariables")
     for number, one in listed:
         scalar = SubElement(variables, "ScalarVariable", _common(one, number) | _role(one))
-        SubElement(scalar, "Integer" if one.kind is Kind.MODE else "Real", _number(one))
+        SubElement(scalar, "Integer" if one.kind is VariableKind.MODE else "Real", _number(one))
     structure = SubElement(root, "ModelStructure")
     for part in ("Outputs", "InitialUnknowns"):
         unknowns = SubElement(structure, part)
         for index, (_, one) in enumerate(listed, start=1):
-            if one.kind in (Kind.SIGNAL, Kind.MODE):
-                none = {"dependencies": ""} if one.follows_states and part == "Outputs" else {}
-                SubElement(unknowns, "Unknown", index=str(index), **none)
+            if one.kind in (VariableKind.SIGNAL, VariableKind.MODE):
+                SubElement(unknowns, "Unknown", {"index": str(index)} | _dependencies(one, part == "Outputs"))
 
 
 # ------------------------------------------------------------------------------------------------------------- FMI 3.0
@@ -159,11 +166,10 @@ def _add_three(root: Element, made: Interface, identifier: str) -> None:
     _experiment(root, made)
     variables = SubElement(root, "ModelVariables")
     for number, one in enumerate(made.variables):
-        of = {"derivative": str(one.of)} if one.kind is Kind.SLOPE else {}
-        kind = "Int32" if one.kind is Kind.MODE else "Float64"
+        of = {"derivative": str(one.of)} if one.kind is VariableKind.SLOPE else {}
+        kind = "Int32" if one.kind is VariableKind.MODE else "Float64"
         SubElement(variables, kind, _common(one, number) | _role(one) | _number(one) | of)
     structure = SubElement(root, "ModelStructure")
     for part in ("Output", "InitialUnknown"):
-        for number, one in made.of(Kind.SIGNAL, Kind.MODE):
-            none = {"dependencies": ""} if one.follows_states and part == "Output" else {}
-            SubElement(structure, part, valueReference=str(number), **none)
+        for number, one in made.of(VariableKind.SIGNAL, VariableKind.MODE):
+            SubElement(structure, part, {"valueReference": str(number)} | _dependencies(one, part == "Output"))

@@ -4,13 +4,13 @@ from __future__ import annotations
 
 import re
 from collections.abc import Sequence
+from importlib.metadata import version as installed
 from pathlib import Path
 from tempfile import TemporaryDirectory
 from typing import TYPE_CHECKING, Any
 
-import clutchwork
 from clutchwork.assembly.system import System
-from clutchwork.base.errors import UseError
+from clutchwork.base.errors import UseError, warn
 from clutchwork.base.paths import fitting
 from clutchwork.base.quote import quote
 from clutchwork.codegen.sources import licence
@@ -19,7 +19,7 @@ from clutchwork.declare.options import Options
 from clutchwork.driveline.driveline import Driveline
 from clutchwork.fmu import archive
 from clutchwork.fmu.description import description
-from clutchwork.fmu.interface import Interface, interface, plain, warn_of
+from clutchwork.fmu.interface import Interface, advice, interface, plain
 from clutchwork.fmu.libraries import libraries
 from clutchwork.fmu.manual import manual
 from clutchwork.fmu.resource import resource
@@ -68,7 +68,8 @@ def export_fmu(
     end, chosen = merged(system.settings, _with_end(system, changes, t_end), options)
     wanted = [None if names is None else plain(names) for names in (outputs, parameters)]
     made = interface(system, end, chosen, plain(inputs), *wanted)
-    warn_of(made)
+    for one in advice(made):
+        warn(one)
     return archive.write(where.with_suffix(".fmu"), _entries(made, where.stem, version, picture))
 
 
@@ -82,7 +83,7 @@ def _with_end(system: System, changes: Mapping[str, Any], t_end: float | None) -
 def _entries(made: Interface, name: str, version: str, picture: bool) -> dict[str, bytes]:
     """What is in the archive, by path."""
     identifier, content = identifier_of(made.system.name or name), resource(made)
-    tool = f"clutchwork {clutchwork.__version__}"
+    tool = f"clutchwork {installed('clutchwork')}"
     entries = {
         "modelDescription.xml": description(made, identifier, content.token, version, tool),
         "resources/model.cw": content.content,

@@ -9,12 +9,12 @@ from typing import Any
 from clutchwork.assembly.system import System
 from clutchwork.assembly.wiring import wiring
 from clutchwork.base.classes import dataclass
-from clutchwork.base.errors import ModelError, ModelWarning, Problem, caller, near
-from clutchwork.base.quote import listed, quote
+from clutchwork.base.errors import ModelError, ModelWarning, Problem, near
+from clutchwork.base.quote import listed
 from clutchwork.declare.layout import ROW
 from clutchwork.declare.options import Options
 from clutchwork.fmu.parameters import parameters
-from clutchwork.fmu.variables import Kind, LeftOut, Variable
+from clutchwork.fmu.variables import FmuVariable, LeftOut, VariableKind
 from clutchwork.results.channels import Channels, channels
 from clutchwork.results.forms import Mode
 from clutchwork.signals.bases.waveform import value as value_at
@@ -41,10 +41,10 @@ class Interface:
     system: System
     options: Options
     t_end: float  # s
-    variables: tuple[Variable, ...]
+    variables: tuple[FmuVariable, ...]
     left_out: tuple[LeftOut, ...]
 
-    def of(self, *kinds: Kind) -> list[tuple[int, Variable]]:
+    def of(self, *kinds: VariableKind) -> list[tuple[int, FmuVariable]]:
         """Variables of some kinds with their value references."""
         return [(number, one) for number, one in enumerate(self.variables) if one.kind in kinds]
 
@@ -64,17 +64,17 @@ def interface(
     """
     pinned = _pinned(system)
     known = channels(pinned, options.angles, options.work)
-    given = _inputs(pinned, known, inputs)
+    given = _inputs(pinned, inputs)
     held = {item: value_at(pinned.inputs[one.numbers[0]].signal, options.t_start) for item, one in given.items()}
     ready = pinned.changed(dict(held)) if held else pinned
     made = list(parameters(ready, set(known)))
     wanted = _outputs(known, outputs, [_shown(known, name) for name in given])
-    found = [one for one in made if isinstance(one, Variable)]
+    found = [one for one in made if isinstance(one, FmuVariable)]
     _refuse(chosen, [one.name for one in found], [one for one in made if isinstance(one, LeftOut)])
     kept = [one for one in found if chosen is None or one.name in chosen]
-    first = [Variable("time", Kind.TIME, "s", options.t_start)]
+    first = [FmuVariable("time", VariableKind.TIME, "s", options.t_start)]
     first += [_input(known, name, one, held[name]) for name, one in given.items()]
-    slopes = [_slope(number, one) for number, one in enumerate(first) if one.kind is Kind.INPUT]
+    slopes = [_slope(number, one) for number, one in enumerate(first) if one.kind is VariableKind.INPUT]
     results = [_output(pinned, known, name) for name in wanted]
     left = tuple(one for one in made if isinstance(one, LeftOut))
     return Interface(ready, options, t_end, (*first, *slopes, *kept, *results), left)
@@ -87,11 +87,10 @@ def _pinned(system: System) -> System:
     with warnings.catch_warnings():
         # said of the driveline already
         warnings.simplefilter("ignore", ModelWarning)
-        made = System.of(system.source, system.independent)
-    return made
+        return System.of(system.source, system.independent)
 
 
-def _inputs(system: System, known: Channels, names: Sequence[str]) -> dict[str, Settable]:
+def _inputs(system: System, names: Sequence[str]) -> dict[str, Settable]:
     """Signals that are set from outside: those that are asked for, and those that only Python can give."""
     settable, problems = signals(system), list[Problem]()
     wanted = list(dict.fromkeys(name.removesuffix("_signal") if name not in settable else name for name in names))
@@ -113,20 +112,24 @@ def _shown(known: Channels, name: str) -> str:
     return f"{name}_signal" if f"{name}_signal" in known else name
 
 
-def _input(known: Channels, name: str, found: Settable, start: float) -> Variable:
+def _input(known: Channels, name: str, found: Settable, start: float) -> FmuVariable:
     lower = found.spec.at_least if found.spec.at_least is not None else found.spec.above
     upper = found.spec.at_most if found.spec.at_most is not None else found.spec.below
     bounds = (-float("inf") if lower is None else lower, float("inf") if upper is None else upper)
-    return Variable(_shown(known, name), Kind.INPUT, found.unit, start, bounds, found.spec.doc, inputs=found.numbers)
+    return FmuVariable(
+        _shown(known, name), VariableKind.INPUT, found.unit, start, bounds, found.spec.doc, inputs=found.numbers
+    )
 
 
-def _slope(number: int, of: Variable) -> Variable:
+def _slope(number: int, of: FmuVariable) -> FmuVariable:
     unit = f"{of.unit}/s" if of.unit != "1" else "1/s"
-    return Variable(f"der({of.name})", Kind.SLOPE, unit, 0.0, about="its rate over the coming step", of=number)
+    return FmuVariable(
+        f"der({of.name})", VariableKind.SLOPE, unit, 0.0, about="its rate over the coming step", of=number
+    )
 
 
 def _outputs(known: Channels, names: Sequence[str] | None, inputs: Sequence[str]) -> list[str]:
-    """Names of the outputs: numbers that are no inputs."""
+    """Names of the outputs: numbers that are not inputs."""
     numbers = [name for name, one in known.items() if not (isinstance(one.evaluate, Mode) and one.evaluate.named)]
     if names is None:
         return [name for name in numbers if name not in inputs]
@@ -139,12 +142,12 @@ def _outputs(known: Channels, names: Sequence[str] | None, inputs: Sequence[str]
     return list(dict.fromkeys(names))
 
 
-def _output(system: System, known: Channels, name: str) -> Variable:
+def _output(system: System, known: Channels, name: str) -> FmuVariable:
     found = known[name]
     if isinstance(found.evaluate, Mode):
-        return Variable(name, Kind.MODE, "1", about=MODE, form=found.evaluate)
+        return FmuVariable(name, VariableKind.MODE, "1", about=MODE, form=found.evaluate)
     follows = not len(system.prescribed_input) and found.evaluate.reads() <= _of_states(system)
-    return Variable(name, Kind.SIGNAL, found.unit, form=found.evaluate, follows_states=follows)
+    return FmuVariable(name, VariableKind.SIGNAL, found.unit, form=found.evaluate, follows_states=follows)
 
 
 def _of_states(system: System) -> set[int]:
@@ -163,22 +166,15 @@ def _refuse(chosen: Sequence[str] | None, known: Sequence[str], left_out: Sequen
         raise ModelError(problems)
 
 
-def advice(made: Interface) -> Iterator[str]:
+def advice(made: Interface) -> Iterator[Problem]:
     """What a master should know of the inputs of an FMU."""
     speeds = {made.system.inputs[number].name for number in made.system.prescribed_input.tolist()}
-    for _, one in made.of(Kind.INPUT):
+    for _, one in made.of(VariableKind.INPUT):
         names = {made.system.inputs[number].name for number in one.inputs}
         if names & speeds:
-            yield (
-                f"{quote(one.name)} prescribes a speed: a value that is held over each step makes it jump, which locked "
-                "contacts cannot follow; give its rate too, as input derivative or der(...)"
-            )
-
-
-def warn_of(made: Interface) -> None:
-    """Warn of what a master should know."""
-    for words in advice(made):
-        warnings.warn(ModelWarning(words), stacklevel=caller())
+            message = "prescribes a speed, which jumps from step to step where its value is held"
+            remedy = "let the master give its rate too, as input derivative or der(...)"
+            yield Problem(one.name, "", message, remedy=remedy)
 
 
 def plain(names: Any) -> tuple[str, ...]:

@@ -5,22 +5,22 @@ from __future__ import annotations
 from clutchwork.base import html
 from clutchwork.fmu.description import structured
 from clutchwork.fmu.interface import Interface
-from clutchwork.fmu.variables import Kind, Variable
+from clutchwork.fmu.variables import FmuVariable, VariableKind
 
 HOW = (
-    "Contacts lock, slip and break away inside of the steps of this FMU, at their exact instants, whatever the step size "
-    "of the master.",
+    "Contacts lock, slip and break away inside of the steps of this FMU, at their exact instants, whatever the step "
+    "size of the master.",
     "Inputs are held over a step where nothing else is said, which lags behind a ramp by half a step. Give their rates "
     "too, as {rates}: then a ramp is exact.",
-    "Fixed parameters are set before the initialisation ends, tunable ones at any time. Values out of bounds are refused, "
-    "with a message in the log, and nothing changes.",
+    "Fixed parameters are set before the initialisation ends, tunable ones at any time. Values out of bounds are "
+    "refused, with a message in the log, and nothing changes.",
     "Events are messages of the log category `events`.",
 )
 RATES = {"2.0": "input derivatives (fmi2SetRealInputDerivatives)", "3.0": "the inputs der(...)"}
 PARTS = (
-    ("Inputs", (Kind.INPUT, Kind.SLOPE)),
-    ("Parameters", (Kind.TUNABLE, Kind.FIXED)),
-    ("Outputs", (Kind.SIGNAL, Kind.MODE)),
+    ("Inputs", (VariableKind.INPUT, VariableKind.SLOPE)),
+    ("Parameters", (VariableKind.TUNABLE, VariableKind.FIXED)),
+    ("Outputs", (VariableKind.SIGNAL, VariableKind.MODE)),
 )
 
 
@@ -29,22 +29,22 @@ def manual(made: Interface, version: str) -> bytes:
     parts = [html.heading(made.system.name)]
     parts += [html.paragraph(words.format(rates=RATES[version])) for words in HOW]
     for title, kinds in PARTS:
-        known = [one for _, one in made.of(*kinds) if version == "3.0" or one.kind is not Kind.SLOPE]
+        known = [one for _, one in made.of(*kinds) if version == "3.0" or one.kind is not VariableKind.SLOPE]
         head = ("name", "unit", "start", "from", "to", "kind", "meaning")
         parts += [html.heading(title), html.table(head, map(_line, known), most=len(known))]
     if made.left_out:
         parts += [
-            html.heading("Numbers that are no parameters"),
+            html.heading("Numbers that are not parameters"),
             html.table(("name", "why"), made.left_out, most=len(made.left_out)),
         ]
     body = html.page(*parts)
-    title = f"<title>{html.text(made.system.name)}</title>"
-    head = f'<!DOCTYPE html>\n<html lang="en"><head><meta charset="utf-8">{title}</head>'
-    return f"{head}<body>{body}</body></html>\n".encode()
+    called = f"<title>{html.text(made.system.name)}</title>"
+    top = f'<!DOCTYPE html>\n<html lang="en"><head><meta charset="utf-8">{called}</head>'
+    return f"{top}<body>{body}</body></html>\n".encode()
 
 
-def _line(one: Variable) -> tuple[str, ...]:
-    given = one.kind in (Kind.INPUT, Kind.SLOPE, Kind.TUNABLE, Kind.FIXED)
+def _line(one: FmuVariable) -> tuple[str, ...]:
+    given = one.kind in (VariableKind.INPUT, VariableKind.SLOPE, VariableKind.TUNABLE, VariableKind.FIXED)
     low, high = (f"{bound:g}" if abs(bound) < 1e300 else "" for bound in one.bounds)
     kind = one.kind.name.lower() if given else ""
     return structured(one.name), one.unit, f"{one.start:g}" if given else "", low, high, kind, one.about

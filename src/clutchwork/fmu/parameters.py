@@ -1,4 +1,4 @@
-"""Which numbers of a driveline are parameters of its FMU: those whose words in the System are straight lines over them."""
+"""Which numbers of a driveline are parameters of its FMU: those that the System follows along straight lines."""
 
 from __future__ import annotations
 
@@ -6,16 +6,16 @@ from collections.abc import Collection, Iterator
 from math import isnan, nan
 from numbers import Real
 
-from clutchwork.assembly.provenance import SystemParameter, straight_lines
+from clutchwork.assembly.provenance import SystemParameter
 from clutchwork.assembly.system import System
-from clutchwork.fmu.variables import Kind, LeftOut, Place, Variable
+from clutchwork.fmu.variables import FmuVariable, LeftOut, Place, VariableKind
 
 BENDS = "what the run needs of it does not follow it along a straight line: export an FMU for each value"
 NOTHING = "it acts on nothing in this driveline"
 
 
-def parameters(system: System, taken: Collection[str]) -> Iterator[Variable | LeftOut]:
-    """All numbers of a System that are no signals, as parameters or with the reason why they are none.
+def parameters(system: System, taken: Collection[str]) -> Iterator[FmuVariable | LeftOut]:
+    """All numbers of a System that are not signals, as parameters or with the reason why they cannot be some.
 
     Parameters: taken, names of results, which a value at the start must not have.
     """
@@ -27,16 +27,16 @@ def parameters(system: System, taken: Collection[str]) -> Iterator[Variable | Le
         if not found.reach:
             yield LeftOut(called, NOTHING)
             continue
-        slopes = straight_lines(found)
+        slopes = found.slopes
         if slopes is None:
             yield LeftOut(called, BENDS)
             continue
         slope = [nan] * len(slopes) if found.is_word else slopes.tolist()
         words = tuple(map(Place, found.words.tolist(), slope))
         tunable = found.stays is None and found.is_word
-        yield Variable(
+        yield FmuVariable(
             called,
-            Kind.TUNABLE if tunable else Kind.FIXED,
+            VariableKind.TUNABLE if tunable else VariableKind.FIXED,
             found.unit,
             float(found.value),
             found.bounds,
@@ -47,6 +47,6 @@ def parameters(system: System, taken: Collection[str]) -> Iterator[Variable | Le
 
 
 def _pool(system: System, parameter: SystemParameter) -> tuple[Place, ...]:
-    """Places in the pool of parameters, which a run can be told."""
+    """Places in the pool of parameters, which may change during a run."""
     first = system.starts["params"] // 8
     return tuple(Place(word - first, nan) for word in parameter.words.tolist())

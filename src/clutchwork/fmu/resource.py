@@ -13,7 +13,7 @@ from clutchwork.declare.core import core
 from clutchwork.declare.layout import CAUSES, MODES, STATUS
 from clutchwork.declare.schema import Role
 from clutchwork.fmu.interface import Interface
-from clutchwork.fmu.variables import Kind, Place, Variable
+from clutchwork.fmu.variables import FmuVariable, Place, VariableKind
 from clutchwork.results.forms import Form
 from clutchwork.results.rows import numbers
 from clutchwork.run.failure import JAMS, covered, jam_of
@@ -31,7 +31,7 @@ class Resource:
     content: bytes
 
 
-class Writer:
+class ResourceWriter:
     """Numbers and strings one after another, as interfaces/fmi/reader.hpp reads them."""
 
     def __init__(self) -> None:
@@ -45,14 +45,14 @@ class Writer:
         """A number."""
         self._parts.append(struct.pack("<d", value))
 
-    def bytes(self, data: bytes) -> None:
+    def block(self, data: bytes) -> None:
         """Bytes with their number before them, filled up to a multiple of eight."""
         self.integer(len(data))
         self._parts.append(data + bytes(-len(data) % 8))
 
     def text(self, value: str) -> None:
         """A string."""
-        self.bytes(value.encode())
+        self.block(value.encode())
 
     def each(self, items: Sequence[T], write: Callable[[T], Any]) -> None:
         """Several, with their number before them."""
@@ -70,21 +70,21 @@ def resource(made: Interface) -> Resource:
     body = _body(made)
     digest = sha256(body).hexdigest()
     token = f"{{{digest[:8]}-{digest[8:12]}-{digest[12:16]}-{digest[16:20]}-{digest[20:32]}}}"
-    head = Writer()
+    head = ResourceWriter()
     head.integer(core().schema_hash())
     head.text(token)
     return Resource(token, MAGIC + head.content() + body)
 
 
 def _body(made: Interface) -> bytes:
-    system, to = made.system, Writer()
+    system, to = made.system, ResourceWriter()
     names = [name for name, _ in numbers(wiring(system))]
-    to.bytes(system.to_bytes())
+    to.block(system.to_bytes())
     to.integer(len(names))
     to.number(made.options.t_start)
-    to.each(list(made.options.core_options().items()), lambda option: (to.text(option[0]), to.number(option[1])))
+    to.each(list(made.options.core_options().items()), lambda option: _option(to, *option))
     forms = [one.form for one in made.variables if one.form is not None]
-    places = {number: place for place, (number, _) in enumerate(made.of(Kind.SIGNAL, Kind.MODE))}
+    places = {number: place for place, (number, _) in enumerate(made.of(VariableKind.SIGNAL, VariableKind.MODE))}
     to.integer(len(made.variables))
     for number, one in enumerate(made.variables):
         _variable(to, one, places.get(number, one.of))
@@ -93,30 +93,40 @@ def _body(made: Interface) -> bytes:
     to.each(names, to.text)
     to.each([item.name for item in system.inputs], to.text)
     to.each([part.name for part in (*system.processes, *system.flows)], to.text)
-    to.each(STATUS, lambda status: (to.text(status[1]), to.text(status[2])))
+    to.each(STATUS, lambda status: _texts(to, *status[1:]))
     to.each([CAUSES[k][0] if k in CAUSES else "start" for k in range(max(CAUSES) + 1)], to.text)
     to.each([MODES[k] for k in sorted(MODES)], to.text)
     return to.content()
 
 
-def _variable(to: Writer, one: Variable, of: int) -> None:
+def _option(to: ResourceWriter, name: str, value: float) -> None:
+    to.text(name)
+    to.number(value)
+
+
+def _texts(to: ResourceWriter, *words: str) -> None:
+    for one in words:
+        to.text(one)
+
+
+def _variable(to: ResourceWriter, one: FmuVariable, of: int) -> None:
     to.integer(one.kind)
     to.text(one.name)
     for number in (one.start, *one.bounds):
         to.number(number)
     to.integer(of)
-    to.integer(1 if one.kind is Kind.SLOPE else 0)
+    to.integer(1 if one.kind is VariableKind.SLOPE else 0)
     to.each(one.inputs, to.integer)
     to.each(one.words, lambda place: _place(to, place))
     to.each(one.params, lambda place: _place(to, place))
 
 
-def _place(to: Writer, place: Place | tuple[int, float]) -> None:
+def _place(to: ResourceWriter, place: Place | tuple[int, float]) -> None:
     to.integer(int(place[0]))
     to.number(float(place[1]))
 
 
-def _parts(to: Writer, made: Interface) -> None:
+def _parts(to: ResourceWriter, made: Interface) -> None:
     """Elements, then contacts, as messages name them."""
     elements = len(wiring(made.system).elements)
     to.integer(elements)
@@ -125,10 +135,8 @@ def _parts(to: Writer, made: Interface) -> None:
     for number, part in enumerate(everything):
         jams = part.role is Role.CONTACT or number in made.system.transmission_element.tolist()
         jam = JAMS[jam_of(made.system, part, number)] if jams else ("", "")
-        to.text(part.name)
-        to.text(covered(part) if part.role is Role.CONTACT and part.friction is not None else "")
-        to.text(jam[0])
-        to.text(jam[1] or (STATUS[_jammed()][2] if jam[0] else ""))
+        ranges = covered(part) if part.role is Role.CONTACT and part.friction is not None else ""
+        _texts(to, part.name, ranges, jam[0], jam[1] or (STATUS[_jammed()][2] if jam[0] else ""))
 
 
 def _jammed() -> int:
@@ -138,7 +146,7 @@ def _jammed() -> int:
 # ------------------------------------------------------------------------------------------------------------- signals
 
 
-def _form(to: Writer, form: Form) -> None:
+def _form(to: ResourceWriter, form: Form) -> None:
     """A signal as a sum of terms: a combination of numbers of the row, or the product of two."""
     to.each(list(_terms(form.data())), lambda term: _term(to, *term))
 
@@ -170,7 +178,7 @@ def _combination(kind: str, rest: Sequence[Any]) -> tuple[float | None, list[tup
     return None, list(zip(*rest, strict=True))
 
 
-def _term(to: Writer, one: Any, other: Any, gate: int) -> None:
+def _term(to: ResourceWriter, one: Any, other: Any, gate: int) -> None:
     to.integer(gate)
     to.integer(0 if other is None else 1)
     for offset, shares in (one, other or (None, [])):

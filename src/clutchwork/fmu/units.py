@@ -39,7 +39,7 @@ def add_units(root: Element, units: Iterable[str]) -> None:
         if unit in DISPLAY:
             shown = DISPLAY[unit]
             offset = {"offset": repr(shown.offset)} if shown.offset else {}
-            SubElement(made, "DisplayUnit", name=shown.name, factor=repr(shown.factor), **offset)
+            SubElement(made, "DisplayUnit", {"name": shown.name, "factor": repr(shown.factor)} | offset)
 
 
 def unit_attributes(unit: str) -> dict[str, str]:

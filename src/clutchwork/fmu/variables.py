@@ -11,7 +11,7 @@ from clutchwork.base.classes import dataclass
 from clutchwork.results.forms import Form
 
 
-class Kind(IntEnum):
+class VariableKind(IntEnum):
     """What a variable is, by the number that the library knows it by."""
 
     TIME = 0
@@ -31,11 +31,11 @@ class Place(NamedTuple):
 
 
 @dataclass(frozen=True)
-class Variable:
+class FmuVariable:
     """One variable; its value reference is its place among all."""
 
     name: str
-    kind: Kind
+    kind: VariableKind
     unit: str
     start: float = 0.0
     bounds: tuple[float, float] = (-inf, inf)
