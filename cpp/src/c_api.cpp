@@ -380,7 +380,7 @@ int cw_paste(cw_run* run, const void* copy, std::int64_t bytes) {
 
 int cw_law(int number, const double* params, const double* inputs, const double* points, std::int64_t n_points,
            double slip, double* kinetic, double* hold) {
-  if (number < 0 || number >= law_kinds || params == nullptr || kinetic == nullptr || hold == nullptr) return 0;
+  if (!has_law(number) || params == nullptr || kinetic == nullptr || hold == nullptr) return 0;
   bool has_curves = false;
   visit_law_curves(number, [&](int) { has_curves = true; });
   visit_law(number, [&](auto tag) {

@@ -1,9 +1,22 @@
 #include "lanes.hpp"
 
+#include "instances.hpp"
+
+#ifdef CLUTCHWORK_ALONE
+/// A program that runs one model at a time.
+namespace clutchwork {
+
+std::int64_t group_size(const System&) { return 0; }
+
+void advance_group(Workspace<double>* const* runs, Sink* sinks, Status* statuses, int n, double t_end, void*) {
+  for (int i = 0; i < n; ++i) statuses[i] = advance(*runs[i], t_end, sinks[i]);
+}
+
+}  // namespace clutchwork
+#else
 #include <array>
 #include <clutchwork/lanes/group.hpp>
 
-#include "instances.hpp"
 #include "lanes_wide.hpp"
 #include "system_checks.hpp"
 
@@ -112,3 +125,4 @@ void advance_group(Workspace<double>* const* runs, Sink* sinks, Status* statuses
 }
 
 }  // namespace clutchwork
+#endif

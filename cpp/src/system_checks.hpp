@@ -104,7 +104,7 @@ inline bool plain_inputs(const System& s, std::int64_t first, int n) {
 
 /// Whether a flow lies inside the pools, between two shared states.
 inline bool flow_fits(const System& s, std::int64_t i) {
-  bool good = s.flow_kind[i] >= 0 && s.flow_kind[i] < flow_kinds && s.flow_from[i] >= -1 && s.flow_from[i] < s.shared &&
+  bool good = has_flow(s.flow_kind[i]) && s.flow_from[i] >= -1 && s.flow_from[i] < s.shared &&
               s.flow_to[i] >= -1 && s.flow_to[i] < s.shared && s.flow_param[i] >= 0 && s.flow_input[i] >= 0;
   if (!good) return false;
   visit_flow(s.flow_kind[i], [&](auto tag) {
@@ -117,8 +117,7 @@ inline bool flow_fits(const System& s, std::int64_t i) {
 
 /// Whether a process lies inside the pools, its states among the shared ones.
 inline bool process_fits(const System& s, std::int64_t i) {
-  bool good = s.process_kind[i] >= 0 && s.process_kind[i] < process_kinds &&
-              s.process_state[i] >= s.states - s.shared && s.process_param[i] >= 0 && s.process_input[i] >= 0;
+  bool good = has_process(s.process_kind[i]) && s.process_state[i] >= s.states - s.shared && s.process_param[i] >= 0 && s.process_input[i] >= 0;
   if (!good) return false;
   visit_process(s.process_kind[i], [&](auto tag) {
     using E = typename decltype(tag)::type;
@@ -162,18 +161,25 @@ inline bool meters_in_range(const System& s) {
   return good;
 }
 
-/// Kinds are known, and offsets point into their pools.
+/// Kinds and the form of the motion are compiled.
+inline bool is_compiled(const System& s) {
+  bool good = s.full[0] != 0 ? has_full_form : has_sparse_form;
+  for (std::int64_t i = 0; i < s.elements; ++i) good = good && has_torque(s.element_kind[i]);
+  for (std::int64_t i = 0; i < s.contacts; ++i)
+    good = good && has_contact(s.contact_kind[i]) && has_law(s.contact_law[i]);
+  return good;
+}
+
+/// Offsets point into their pools.
 inline bool offsets_in_range(const System& s) {
   const std::int64_t ne = s.elements, nc = s.contacts;
-  const bool kinds = within(s.element_kind, ne, 0, torque_kinds - 1) &&
-                     within(s.contact_kind, nc, 0, contact_kinds - 1) && within(s.contact_law, nc, 0, law_kinds - 1);
   const bool params = within(s.element_param, ne, 0, s.n_params) && within(s.contact_param, nc, 0, s.n_params) &&
                       within(s.contact_law_param, nc, 0, s.n_params);
   const bool states = within(s.element_state, ne, 0, s.states) && within(s.contact_state, nc, 0, s.states);
   const bool inputs = within(s.element_input, ne, 0, s.n_input_refs) &&
                       within(s.contact_input, nc, 0, s.n_input_refs) &&
                       within(s.contact_law_input, nc, 0, s.n_input_refs);
-  return kinds && params && states && inputs && within(s.prescribed_input, s.prescribed, 0, s.inputs - 1) &&
+  return params && states && inputs && within(s.prescribed_input, s.prescribed, 0, s.inputs - 1) &&
          within(s.input_refs, s.n_input_refs, 0, s.inputs + s.shared + 2 * (ne + nc) - 1);
 }
 
@@ -301,7 +307,7 @@ inline bool matrices_fit(const System& s) {
 
 /// Offsets and numbers inside the system that the core follows without looking.
 inline bool in_range(const System& s) {
-  bool good = offsets_in_range(s) && ways_fit(s) && loads_fit(s) && transmissions_fit(s) && shared_in_range(s) &&
+  bool good = is_compiled(s) && offsets_in_range(s) && ways_fit(s) && loads_fit(s) && transmissions_fit(s) && shared_in_range(s) &&
               meters_in_range(s) && matrices_fit(s);
   std::int64_t all = 0, own = 0, segments = 0;
   for (std::int64_t i = 0; good && i < s.inputs; ++i) good = signal_fits(s, i, segments);

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import filecmp
 import io
 import re
 import shutil
@@ -18,7 +17,6 @@ from clutchwork.assembly.wiring import wiring
 from clutchwork.command.main import main
 from clutchwork.results.channels import Channels
 from clutchwork.run.begin import new_run
-from support.project import ROOT
 
 feature = pytest.mark.feature
 
@@ -87,29 +85,10 @@ def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
     return cw.export_c(driveline(), tmp_path_factory.mktemp("export") / "car", t_end=T_END, dt=DT, rtol=1e-8)
 
 
-# objects of the tests of the core, which have the same flags; what has lanes depends on the machine
-OBJECTS = ROOT / "build" / "cpp" / "CMakeFiles" / "clutchwork_core.dir" / "cpp" / "src"
-
-
-def take_built(folder: Path) -> None:
-    """Objects that `make test-cpp` compiled from these sources; make would compile the same again."""
-    sources = [path.stat().st_mtime for path in (ROOT / "cpp").rglob("*.*") if path.suffix in (".h", ".hpp", ".cpp")]
-    made = [path for path in OBJECTS.glob("*.o") if path.stat().st_mtime > max(sources)]
-    generated = [(path, ROOT / "build/cpp/generated/clutchwork" / path.name) for path in folder.rglob("*.gen.hpp")]
-    if made and generated and all(two.exists() and filecmp.cmp(one, two, shallow=False) for one, two in generated):
-        (folder / "build").mkdir(exist_ok=True)
-        for path in made:
-            name = path.name.removesuffix(".cpp.o")
-            # the door is compiled here, as a user does it
-            if "lanes" not in name and name != "c_api" and (folder / "core" / "src" / f"{name}.cpp").exists():
-                shutil.copy(path, folder / "build" / f"{name}.o")
-
-
 @pytest.fixture(scope="module")
 def built(folder: Path) -> Path:
     if any(shutil.which(tool) is None for tool in ("cc", "c++", "make")):
         pytest.skip("needs cc, c++ and make")
-    take_built(folder)
     made = subprocess.run(["make", "-j4", "-C", folder, *FLAGS], capture_output=True, text=True, check=False)
     assert made.returncode == 0, made.stdout + made.stderr
     return folder
@@ -181,6 +160,89 @@ def test_inputs_are_set_from_outside_in_c(built: Path) -> None:
     row, channels = np.array(run.row()).reshape(1, -1), Channels(wiring(system))
     expected = [channels[name].evaluate(row)[0] for name in ("wheel (2).speed", "c1.temperature")]
     np.testing.assert_array_equal([float(number) for number in told.split()], expected)
+
+
+# every allocation ends the program; what it computes is in its exit code
+ALONE_C = """
+#include <stddef.h>
+#include "model.h"
+void abort(void);
+void *malloc(size_t n) { (void)n; abort(); }
+void *calloc(size_t n, size_t m) { (void)n, (void)m; abort(); }
+void *realloc(void *p, size_t n) { (void)p, (void)n; abort(); }
+static _Alignas(16) unsigned char memory[MODEL_MEMORY];
+int main(void) {
+  double row[MODEL_ROW_SIZE], event[MODEL_EVENT_SIZE];
+  cw_run *run = cw_load(model_system, MODEL_SYSTEM_BYTES, memory, sizeof memory);
+  if (!run || !model_set_options(run)) return 2;
+  if (model_set_param(run, MODEL_PARAM_C1_GAIN, -1.0) || model_set_param(run, MODEL_PARAMS, 1.0)) return 3;
+  if (!model_set_param(run, MODEL_PARAM_SHAFT_STIFFNESS, 5e3)) return 4;
+  for (int k = 1; k <= 100; ++k) {
+    if (cw_advance(run, 0.01 * k, NULL, NULL, 0, 0, NULL) != MODEL_STATUS_DONE) return 5;
+    while (cw_take_events(run, event, 1) == 1) continue;
+  }
+  if (model_set_param(run, MODEL_PARAM_SHAFT_STIFFNESS, 4e3)) return 6;
+  if (!model_set_param(run, MODEL_PARAM_SHAFT_DAMPING, 6.0)) return 7;
+  return cw_row(run, row) == MODEL_STATUS_DONE && row[MODEL_ROW_C1_MODE] == MODEL_MODE_LOCKED ? 0 : 8;
+}
+"""
+MORE_C = """
+#include <clutchwork/c_api.h>
+#include "other_model_system.h"
+int main(void) { return cw_size(model_system, MODEL_SYSTEM_BYTES) == -1 ? 0 : 1; }
+"""
+# what the core may need of a C library
+NEEDED = {"memcpy", "memmove", "memset", "memcmp", "strcmp", "floor", "fmod", "sqrt", "nearbyint", "ceil", "trunc"}
+
+
+def test_it_runs_without_a_heap_and_keeps_bounds(built: Path) -> None:
+    (built / "alone.c").write_text(ALONE_C)
+    parts = ["build/model.o", "build/model_system.o", "build/libclutchwork.a", "-lm"]
+    command = ["cc", "-std=c11", "-I.", "-Icore/include", "alone.c", *parts, "-Wl,--gc-sections", "-o", "alone"]
+    subprocess.run(command, cwd=built, check=True)
+    assert subprocess.run([built / "alone"], check=False).returncode == 0
+
+
+@pytest.mark.skipif(not shutil.which("nm"), reason="needs binutils")
+def test_the_core_needs_little_of_a_c_library(built: Path) -> None:
+    lines = subprocess.run(
+        ["nm", built / "build" / "libclutchwork.a"], capture_output=True, text=True, check=True
+    ).stdout
+    words = [line.split() for line in lines.splitlines() if line.strip() and not line.endswith(":")]
+    own = {one[-1] for one in words if one[-2] != "U"}
+    asked = {one[-1] for one in words if one[-2] == "U"} - own
+    assert {name for name in asked if not name.startswith("_")} <= NEEDED
+
+
+def test_only_what_the_model_needs_is_compiled(folder: Path, built: Path) -> None:
+    """And a System that needs more is refused."""
+    text = (folder / "core/include/clutchwork/parts.gen.hpp").read_text()
+    assert "#define CLUTCHWORK_ALONE" in text
+    system = driveline().assemble()
+    mask = sum(1 << kind for kind in set(system.arrays["element_kind"].tolist()))
+    assert f"CLUTCHWORK_TORQUE {mask:#x}ull" in text
+    other = cw.Driveline("other")
+    a, b = other.shaft("a", inertia=1.0, speed=1.0), other.shaft("b", inertia=1.0)
+    other.add(cw.NonlinearSpring("shaft", base=a, follower=b, torque=[(-0.1, -50.0), (0.1, 50.0)]))
+    cw.export_c(other, folder.parent / "other", t_end=1.0)
+    for name in ("model_system.c", "model_system.h"):
+        shutil.copy(folder.parent / "other" / name, built / f"other_{name}")
+    (built / "more.c").write_text(MORE_C)
+    text = (built / "other_model_system.c").read_text().replace('"model_system.h"', '"other_model_system.h"')
+    (built / "other_model_system.c").write_text(text)
+    command = [
+        "cc",
+        "-I.",
+        "-Icore/include",
+        "more.c",
+        "other_model_system.c",
+        "build/libclutchwork.a",
+        "-lm",
+        "-o",
+        "more",
+    ]
+    subprocess.run(command, cwd=built, check=True)
+    assert subprocess.run([built / "more"], check=False).returncode == 0
 
 
 def test_the_event_is_told(built: Path) -> None:

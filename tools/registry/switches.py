@@ -10,11 +10,20 @@ from registry.asserts import asserts
 from registry.components import Field, components
 
 FILE = "registry.gen.hpp"
+PARTS = "<clutchwork/parts.gen.hpp>"
 
 
 def lines() -> Iterator[str]:
     """The header without its head."""
-    yield from ("#include <cstddef>", "#include <clutchwork/component.hpp>", "#include <clutchwork/layout.gen.hpp>")
+    # what an exported model says of the parts of the core that it needs
+    yield from (
+        "#include <cstddef>",
+        "#include <cstdint>",
+        f"#if __has_include({PARTS})",
+        f"#include {PARTS}",
+        "#endif",
+    )
+    yield from ("#include <clutchwork/component.hpp>", "#include <clutchwork/layout.gen.hpp>")
     for component in components():
         yield f"#include <{component.header.removeprefix('cpp/include/')}>"
     # the parameters of a law may start with those of the Stribeck curve that it shares
@@ -38,13 +47,19 @@ def probes() -> Iterator[str]:
 
 
 def visitor(role: Role) -> Iterator[str]:
-    """A switch over the kinds of one role."""
-    found = list(components(role))
+    """A switch over the kinds of one role that are compiled: all, or those of a mask of bits."""
+    found, mask = list(components(role)), f"CLUTCHWORK_{role.value.upper()}"
     yield f"inline constexpr int {role.value}_kinds = {len(found)};"
+    yield from (f"#ifndef {mask}", f"#define {mask} ~0ull", "#endif")
+    yield f'static_assert({role.value}_kinds <= 64, "{mask} has 64 bits");'
+    yield f"constexpr bool has_{role.value}(std::int64_t kind) {{"
+    yield f"  return kind >= 0 && kind < {role.value}_kinds && (({mask}) >> kind & 1) != 0;"
+    yield "}"
     yield f"template <class F> CLUTCHWORK_INLINE decltype(auto) visit_{role.value}(int kind, F&& f) {{"
     yield "  switch (kind) {"
     for number, component in enumerate(found):
-        yield f"    case {number}: return f(Tag<{component.name}>{{}});"
+        call = f"return f(Tag<{component.name}>{{}})"
+        yield f"    case {number}: if constexpr (has_{role.value}({number})) {call}; else break;"
     yield "  }"
     yield "  __builtin_unreachable();"
     yield "}"

@@ -12,7 +12,8 @@ from clutchwork.base.paths import folder as made_folder
 from clutchwork.base.quote import quote
 from clutchwork.base.writing import put
 from clutchwork.codegen.model import Exported, chosen, files
-from clutchwork.codegen.sources import sources
+from clutchwork.codegen.parts import FILE, parts
+from clutchwork.codegen.sources import GENERATED, sources
 from clutchwork.declare.calls import explained
 from clutchwork.declare.options import Options
 from clutchwork.driveline.driveline import Driveline
@@ -68,7 +69,8 @@ def _refuse_large(exported: Exported) -> None:
 def _write(exported: Exported, folder: Path) -> Path:
     for name, lines in files(exported).items():
         _put(folder / name, ("\n".join(lines) + "\n").encode())
-    for path, content in sources().items():
+    core = {**sources(), GENERATED / FILE: ("\n".join(parts(exported.system)) + "\n").encode()}
+    for path, content in core.items():
         _put(folder / "core" / path, content)
     # these belong to whoever edits them
     for template in sorted(TEMPLATES.iterdir()):

@@ -4,11 +4,16 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from functools import cached_property
+from math import inf, nextafter
 
+import numpy as np
+
+from clutchwork.assembly.provenance import SystemParameter, bounds_of
 from clutchwork.assembly.system import System
 from clutchwork.assembly.wiring import Wiring, wiring
 from clutchwork.base.c_literal import literal
 from clutchwork.base.classes import dataclass
+from clutchwork.codegen.readme import readme
 from clutchwork.codegen.text import comment, enumeration, identifiers, string
 from clutchwork.declare.layout import CAUSES, EVENT, MODES, STATUS
 from clutchwork.declare.options import OPTIONS, Options
@@ -59,16 +64,24 @@ class Exported:
         return identifiers("MODEL_ROW_", [name for name, _ in numbers(self.wiring)])
 
     @property
-    def outside(self) -> list[tuple[int, str, str]]:
-        """Number, name and unit of the inputs that are set from outside."""
-        counts = self.system.arrays["input_count"]
-        return [(k, item.name, item.unit) for k, item in enumerate(self.system.inputs) if counts[k] == 0]
+    def outside(self) -> set[int]:
+        """Numbers of the inputs that are set from outside alone."""
+        return set(np.flatnonzero(self.system.arrays["input_count"] == 0).tolist())
 
     @property
     def settable(self) -> dict[str, int]:
         """Parameters and their places, without those that are fixed when a run is loaded."""
         run, values = new_run(self.data), self.system.arrays["params"]
         return {path: k for path, k in self.system.places.items() if run.is_settable(k, float(values[k]))}
+
+    def parameter(self, path: str) -> SystemParameter | None:
+        """What may be said of a number by its path; None: it is one of a part that nobody can name."""
+        return self.system.parameters[path] if path in self.known else None
+
+    @cached_property
+    def known(self) -> frozenset[str]:
+        """Everything of the driveline that has a name."""
+        return frozenset(self.system.parameters) if self.system.source is not None else frozenset()
 
     @property
     def instants(self) -> int:
@@ -94,6 +107,8 @@ def header(model: Exported) -> Iterator[str]:
     yield from ("#ifdef __cplusplus", 'extern "C" {', "#endif", "")
     yield "/* The settings of the solver with which the model was exported; 0: the core refuses one. */"
     yield from ("int model_set_options(cw_run *run);", "")
+    yield "/* Set a number of enum model_param. 1: done; 0: out of its bounds, or fixed once a run has begun. */"
+    yield from ("int model_set_param(cw_run *run, int64_t param, double value);", "")
     yield "/* What main.c prints: name, unit, value in a row. */"
     yield "typedef struct {"
     yield from ("  const char *name, *unit;", "  double (*value)(const double *row);", "} model_signal;")
@@ -121,16 +136,18 @@ def _enumerations(model: Exported) -> Iterator[str]:
     row = [(column, k, f"{n} [{u}]") for k, (column, (n, u)) in enumerate(zip(model.columns, _row(model), strict=True))]
     yield "/* Where each number stands in a row. */"
     yield from enumeration("model_row", [*row, ("MODEL_ROW_SIZE", len(row), "numbers in a row")])
-    yield from ("", "/* Inputs that are set from outside, as cw_set_input takes them; at zero until they are set. */")
-    names = identifiers("MODEL_INPUT_", [name for _, name, _ in model.outside])
-    inputs = [(name, k, f"{n} [{u}]") for name, (k, n, u) in zip(names, model.outside, strict=True)]
-    yield from enumeration("model_input", [*inputs, ("MODEL_OUTSIDE", len(inputs), "how many there are")])
-    yield from ("", "/* Numbers that cw_set_param changes. */")
+    yield from (
+        "",
+        "/* Inputs, as cw_set_input takes them; those from outside alone are at zero until they are set. */",
+    )
+    names = identifiers("MODEL_INPUT_", [item.name for item in model.system.inputs])
+    inputs = [(name, k, _input(model, k)) for k, name in enumerate(names)]
+    yield from enumeration("model_input", [*inputs, ("MODEL_OUTSIDE", len(model.outside), "from outside alone")])
+    yield from ("", "/* Numbers that model_set_param changes: unit, bounds, and when. */")
     settable = model.settable
     count = len(model.system.arrays["params"])
-    members = [
-        (name, settable[path], path) for name, path in zip(identifiers("MODEL_PARAM_", settable), settable, strict=True)
-    ]
+    named = zip(identifiers("MODEL_PARAM_", settable), settable, strict=True)
+    members = [(name, settable[path], _parameter(model, path)) for name, path in named]
     yield from enumeration("model_param", [*members, ("MODEL_PARAMS", count, "numbers in the pool")])
     yield from ("", "/* Modes of a contact: slip below zero, locked, slip above zero, open. */")
     yield from enumeration("model_mode", [(f"MODEL_MODE_{name.upper()}", k, "") for k, name in MODES.items()])
@@ -143,6 +160,29 @@ def _enumerations(model: Exported) -> Iterator[str]:
     yield from ("", "/* Where each number stands in an event. */")
     event = [(f"MODEL_EVENT_{name.upper()}", k, unit) for k, (name, unit) in enumerate(EVENT)]
     yield from (*enumeration("model_event", [*event, ("MODEL_EVENT_SIZE", len(event), "numbers in an event")]), "")
+
+
+def _input(model: Exported, number: int) -> str:
+    item, spec = model.system.inputs[number], model.system.inputs[number].spec
+    words = f"{item.name} [{item.unit}]{_within(bounds_of(spec))}"
+    return f"{words}, from outside alone" if number in model.outside else words
+
+
+def _parameter(model: Exported, path: str) -> str:
+    found = model.parameter(path)
+    return path if found is None else f"{path} [{found.unit}]{_within(found.bounds)}, {found.when}"
+
+
+def _within(bounds: tuple[float, float]) -> str:
+    """Bounds in words: the number beside one that is not allowed itself is the longer one."""
+    low, high = bounds
+    below, above = nextafter(low, -inf), nextafter(high, inf)
+    words = []
+    if low > -inf:
+        words.append(f"above {below:g}" if len(f"{below:g}") < len(f"{low:g}") else f"from {low:g}")
+    if high < inf:
+        words.append(f"below {above:g}" if len(f"{above:g}") < len(f"{high:g}") else f"to {high:g}")
+    return "".join(f", {word}" for word in words)
 
 
 def _row(model: Exported) -> list[tuple[str, str]]:
@@ -158,6 +198,7 @@ def tables(model: Exported) -> Iterator[str]:
         words = comment(f"[{row.spec.unit}] {row.spec.doc}" if row.unit else row.spec.doc)
         yield f'         && cw_set_option(run, "{name}", {literal(value)}) /* {words} */'
     yield from ("      ;", "}", "")
+    yield from _bounds(model)
     yield "const model_signal model_signals[MODEL_SIGNALS] = {"
     for name in model.printed:
         yield f"    {{{string(name)}, {string(model.signals[name].unit)}, {model.functions[name]}}},"
@@ -165,6 +206,24 @@ def tables(model: Exported) -> Iterator[str]:
     yield from (f"    {string(contact.name)}," for contact in model.system.contacts)
     yield from (["    0,"] if not model.system.contacts else [])
     yield "};"
+
+
+def _bounds(model: Exported) -> Iterator[str]:
+    """The bounds of parameters as a switch, and the call that keeps them."""
+    yield "int model_set_param(cw_run *run, int64_t param, double value) {"
+    yield from ("  double low = -INFINITY, high = INFINITY;", "  int fixed = 0;", "  switch (param) {")
+    for name, path in zip(identifiers("MODEL_PARAM_", model.settable), model.settable, strict=True):
+        found = model.parameter(path)
+        if found is not None:
+            low, high = map(_limit, found.bounds)
+            yield f"    case {name}: low = {low}, high = {high}, fixed = {int(found.stays is not None)}; break;"
+    yield from ("    default: return 0;", "  }", "  int64_t counts[7] = {0};", "  cw_statistics(run, counts);")
+    yield "  if (!(value >= low && value <= high) || (fixed && counts[0] + counts[1] > 0)) return 0;"
+    yield from ("  return cw_set_param(run, param, value);", "}", "")
+
+
+def _limit(bound: float) -> str:
+    return literal(bound) if abs(bound) < inf else "INFINITY" if bound > 0 else "-INFINITY"
 
 
 def system_header(model: Exported) -> Iterator[str]:
@@ -193,6 +252,7 @@ def files(model: Exported) -> dict[str, Iterator[str]]:
         "model.c": tables(model),
         "model_system.h": system_header(model),
         "model_system.c": system_bytes(model.data),
+        "README.md": readme(model, new_run(model.data).memory_size),
     }
 
 

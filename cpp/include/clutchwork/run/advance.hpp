@@ -39,12 +39,14 @@ Status run_phase(Workspace<typename Form::Scalar>& ws, double t_end, Sink& sink)
 /// The full form for systems that need it, the small one for few speeds, a sparse one for the rest.
 template <class T>
 Status dispatch(Workspace<T>& ws, double t_end, Sink& sink) {
-  if (ws.sys.full[0] != 0) return run_phase<FullForm<T>>(ws, t_end, sink);
-  if (ws.reduced.is_sparse) return run_phase<SparseForm<T>>(ws, t_end, sink);
-  if constexpr (has_tangents<T>)
-    return Status::no_mode;
-  else
-    return run_phase<SmallForm<T>>(ws, t_end, sink);
+  if constexpr (has_full_form) {
+    if (ws.sys.full[0] != 0) return run_phase<FullForm<T>>(ws, t_end, sink);
+  }
+  if constexpr (has_sparse_form) {
+    if (ws.reduced.is_sparse) return run_phase<SparseForm<T>>(ws, t_end, sink);
+  }
+  if constexpr (has_small_forms && !has_tangents<T>) return run_phase<SmallForm<T>>(ws, t_end, sink);
+  return Status::no_mode;
 }
 
 /// Speeds, states, angles and work as they start.

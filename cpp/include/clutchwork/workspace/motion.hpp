@@ -63,6 +63,13 @@ struct Geometry {
   }
 };
 
+/// Forms of the motion that are compiled, as bits: 1 the small ones, 2 sparse, 4 full. A program of one model needs few.
+#ifndef CLUTCHWORK_FORMS
+#define CLUTCHWORK_FORMS 7
+#endif
+inline constexpr bool has_small_forms = (CLUTCHWORK_FORMS & 1) != 0, has_sparse_form = (CLUTCHWORK_FORMS & 2) != 0,
+                      has_full_form = (CLUTCHWORK_FORMS & 4) != 0;
+
 /// Sizes of the small forms: one speed to small_speeds, no state to small_states.
 inline constexpr int small_speeds = 4, small_states = 2;
 

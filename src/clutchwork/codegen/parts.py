@@ -1,0 +1,36 @@
+"""Which parts of the core a model needs: kinds of components and forms of the motion, as a header of the core."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import TYPE_CHECKING
+
+from clutchwork.declare.schema import Role
+
+if TYPE_CHECKING:
+    from clutchwork.assembly.system import System
+
+FILE = "parts.gen.hpp"
+# arrays with the kinds of each role
+KINDS = {
+    Role.TORQUE: "element_kind",
+    Role.CONTACT: "contact_kind",
+    Role.LAW: "contact_law",
+    Role.FLOW: "flow_kind",
+    Role.PROCESS: "process_kind",
+}
+SMALL, SPARSE, FULL = 1, 2, 4
+
+
+def parts(system: System) -> Iterator[str]:
+    """The header; registry.gen.hpp includes it where it is there."""
+    yield from ("// What the exported model needs of the core; a System that needs more is refused.", "#pragma once")
+    for role, array in KINDS.items():
+        kinds = set(system.arrays[array].tolist())
+        # a switch has at least one case
+        mask = sum(1 << kind for kind in kinds) or 1
+        yield f"#define CLUTCHWORK_{role.value.upper()} {mask:#x}ull"
+    full = bool(system.full[0])
+    yield from ("#ifdef CLUTCHWORK_SMALL", f"#define CLUTCHWORK_FORMS {FULL if full else SPARSE}", "#else")
+    yield from (f"#define CLUTCHWORK_FORMS {FULL if full else SMALL + SPARSE}", "#endif")
+    yield from ("// one run at a time", "#define CLUTCHWORK_ALONE")
