@@ -13,11 +13,13 @@ from clutchwork.base.quote import quote
 from clutchwork.base.writing import put
 from clutchwork.codegen.model import Exported, chosen, files
 from clutchwork.codegen.parts import FILE, parts
+from clutchwork.codegen.readme import readme
 from clutchwork.codegen.sources import GENERATED, sources
 from clutchwork.declare.calls import explained
 from clutchwork.declare.options import Options
 from clutchwork.driveline.driveline import Driveline
 from clutchwork.results.channels import channels
+from clutchwork.run.begin import new_run
 from clutchwork.run.settings import merged
 
 if TYPE_CHECKING:
@@ -67,7 +69,8 @@ def _refuse_large(exported: Exported) -> None:
 
 
 def _write(exported: Exported, folder: Path) -> Path:
-    for name, lines in files(exported).items():
+    about = {"README.md": readme(exported, new_run(exported.data).memory_size)}
+    for name, lines in {**files(exported), **about}.items():
         _put(folder / name, ("\n".join(lines) + "\n").encode())
     core = {**sources(), GENERATED / FILE: ("\n".join(parts(exported.system)) + "\n").encode()}
     for path, content in core.items():

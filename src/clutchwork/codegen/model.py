@@ -13,7 +13,6 @@ from clutchwork.assembly.system import System
 from clutchwork.assembly.wiring import Wiring, wiring
 from clutchwork.base.c_literal import literal
 from clutchwork.base.classes import dataclass
-from clutchwork.codegen.readme import readme
 from clutchwork.codegen.text import comment, enumeration, identifiers, string
 from clutchwork.declare.layout import CAUSES, EVENT, MODES, STATUS
 from clutchwork.declare.options import OPTIONS, Options
@@ -252,7 +251,6 @@ def files(model: Exported) -> dict[str, Iterator[str]]:
         "model.c": tables(model),
         "model_system.h": system_header(model),
         "model_system.c": system_bytes(model.data),
-        "README.md": readme(model, new_run(model.data).memory_size),
     }
 
 
