@@ -24,8 +24,8 @@ NAMES = ("c_api", "components", "phases_small", "phases_sparse", "phases_full")
 SOURCES = [ROOT / "cpp" / "src" / f"{name}.cpp" for name in NAMES]
 # what a step spends its time in is inlined by force, as in the native build
 HOT = {"phases_small", "phases_sparse"}
-# what a page has no use for: groups of runs, linearisation
-LEFT_OUT = re.compile(r"cw_(advance_group|group_size|local|local_size)")
+# what a page has no use for: groups of runs, linearisation, what FMUs ask for
+LEFT_OUT = re.compile(r"cw_(advance_group|group_size|local|local_size|advance_to_event|next_knot|copy|paste)")
 FLAGS = [
     "-std=c++20",
     "-g0",

@@ -30,7 +30,5 @@ def parts(system: System) -> Iterator[str]:
         # a switch has at least one case
         mask = sum(1 << kind for kind in kinds) or 1
         yield f"#define CLUTCHWORK_{role.value.upper()} {mask:#x}ull"
-    full = bool(system.full[0])
-    yield from ("#ifdef CLUTCHWORK_SMALL", f"#define CLUTCHWORK_FORMS {FULL if full else SPARSE}", "#else")
-    yield from (f"#define CLUTCHWORK_FORMS {FULL if full else SMALL + SPARSE}", "#endif")
+    yield f"#define CLUTCHWORK_FORMS {FULL if system.full[0] else SMALL + SPARSE}"
     yield from ("// one run at a time", "#define CLUTCHWORK_ALONE")

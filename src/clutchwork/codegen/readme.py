@@ -12,7 +12,7 @@ USE = """\
     make           # model: the whole run at once; model_steps: a step at a time
     ./model > model.csv
     make report    # sizes, stack, time of a step and the longest one, on the machine that runs it
-    make SMALL=1   # the least code; the last digits differ""".splitlines()
+    make SMALL=1   # the least code, with the same numbers""".splitlines()
 NEEDS = """\
 No call allocates on the heap, throws, or writes anywhere but into the memory that it is given. It needs memcpy,
 memmove, memset, memcmp and strcmp, floor, fmod, sqrt and nearbyint, and nothing else of a C library.

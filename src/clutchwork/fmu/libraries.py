@@ -21,12 +21,16 @@ class Library(NamedTuple):
     folders: dict[str, str]  # by version
 
 
+def folder() -> Path:
+    """Where they are."""
+    return Path(core().__file__).parent.joinpath(*INSTALLED)
+
+
 def libraries() -> list[Library]:
     """All that were built; FileNotFoundError where there is none."""
-    folder = Path(core().__file__).parent.joinpath(*INSTALLED)
-    found = [made for path in sorted(folder.glob("*-*.*")) if (made := _library(path)) is not None]
+    found = [made for path in sorted(folder().glob("*-*.*")) if (made := _library(path)) is not None]
     if not found:
-        raise FileNotFoundError(f"{folder} holds no library of FMUs: install clutchwork again")
+        raise FileNotFoundError(f"{folder()} holds no library of FMUs: install clutchwork again")
     return found
 
 
