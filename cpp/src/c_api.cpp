@@ -84,6 +84,24 @@ int take_sink(Sink& sink, cw_run* run, double t_end, double* times, double* rows
   return 0;
 }
 
+/// What points into the memory or the system of another run points into those of this one.
+void move_pointers(cw_run* run, const cw_run& other) {
+  auto moved = [&](const double*& p) {
+    const auto* at = reinterpret_cast<const unsigned char*>(p);
+    if (at >= other.arrays && at < other.arrays + other.bytes)
+      at = run->arrays + (at - other.arrays);
+    else if (at >= other.system && at < other.system + other.system_bytes)
+      at = run->system + (at - other.system);
+    p = reinterpret_cast<const double*>(at);
+  };
+  Workspace<double>& ws = run->ws;
+  for (int k = 0; k < ws.n_directions; ++k) {
+    Branch<double>& b = ws.branch[k];
+    for (auto* p : {&b.params, &b.law_params, &b.input, &b.input_slope, &b.law_input, &b.law_input_slope}) moved(*p);
+  }
+  for (std::int64_t i = 0; i < ws.sys.inputs; ++i) moved(ws.in.signal[i].coef);
+}
+
 saved::Measure measured(const cw_run* run) {
   saved::Measure m;
   saved::describe(run->ws, m);
@@ -375,6 +393,7 @@ int cw_paste(cw_run* run, const void* copy, std::int64_t bytes) {
   bind(run->ws.sys, run->system, run->system_bytes);
   std::memcpy(run->arrays, from + head, std::size_t(bytes - head));
   carve(run->ws, run->arrays);
+  if (other.arrays != run->arrays || other.system != run->system) move_pointers(run, other);
   return 1;
 }
 

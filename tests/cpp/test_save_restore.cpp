@@ -27,6 +27,46 @@ void same(const Numbers& a, const Numbers& b) {
   CHECK(std::memcmp(a.data(), b.data(), a.size() * sizeof(double)) == 0);
 }
 
+/// The same by a copy of the memory, which no pointer of the first run outlives.
+void pastes(const Model& model, double middle, double end) {
+  Run first(model), used(model), alone(model);
+  CHECK(first.advance(middle) == 0);
+  first.events();
+  Bytes copy(first.memory.size());
+  const std::int64_t n = cw_copy(first.run, copy.data(), std::int64_t(copy.size()));
+  CHECK(n > 0 && cw_copy(first.run, copy.data(), n - 1) == -1);
+  const Numbers told = story(first, end);
+  CHECK(cw_paste(first.run, copy.data(), n - 1) == 0);
+  CHECK(cw_paste(first.run, copy.data(), n) == 1);
+  CHECK(cw_time(first.run) == middle);
+  same(told, story(first, end));
+  CHECK(used.advance(0.5 * (middle + end)) == 0);
+  used.events();
+  for (Run* other : {&used, &alone}) {
+    CHECK(cw_paste(other->run, copy.data(), n) == 1);
+    drop_fences(first.memory.data(), std::int64_t(first.memory.size()));
+    std::memset(first.memory.data(), 0xff, first.memory.size());
+    std::memset(first.system.data(), 0xff, first.system.size());
+    same(told, story(*other, end));
+  }
+}
+
+/// A run that stops at each event takes them all, at the instants at which the whole run has them.
+void stops_at_events(const Model& model, double end) {
+  Run whole(model), stepped(model);
+  CHECK(whole.advance(end) == 0);
+  const Numbers told = whole.events();
+  Numbers found;
+  int stops = 0;
+  for (double before = -1; cw_time(stepped.run) < end && stops < 1000; ++stops) {
+    CHECK(cw_advance_to_event(stepped.run, end) == 0);
+    CHECK(cw_time(stepped.run) >= before);
+    before = cw_time(stepped.run);
+    for (double x : stepped.events()) found.push_back(x);
+  }
+  same(told, found);
+}
+
 /// Saved at `middle`, continued there and in other memory, after other things have happened there.
 void continues(const Model& model, double middle, double end, double method = 1) {
   Run first(model);
@@ -137,6 +177,11 @@ int test_save_restore() {
   }
   for (bool changed : {false, true}) full_buffer(changed);
   settings_come_back();
+  for (double middle : {0.0, 0.7, 1.83}) {
+    pastes(three_shafts(), middle, 2.5), pastes(chain(), middle, 2.0), pastes(bristles(), middle, 3.0);
+    pastes(hysteresis(), middle, 2.5), pastes(warm(), middle, 3.0), pastes(full_without_load(), middle, 2.0);
+  }
+  for (const Model& model : {three_shafts(), chain(), parallel(), hysteresis(), warm()}) stops_at_events(model, 1.9);
   for (double middle : {0.0, 0.3, 0.7, 0.95, 1.4, 1.83, 2.2}) continues(three_shafts(), middle, 2.5);
   for (double middle : {0.0, 0.1, 0.35, 0.5, 0.77, 1.3}) continues(chain(), middle, 2.0);
   for (double middle : {0.0, 0.4, 0.8, 1.21, 1.6, 1.9, 2.5}) continues(bristles(), middle, 3.0);
