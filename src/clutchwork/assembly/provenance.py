@@ -10,10 +10,10 @@ from __future__ import annotations
 import warnings
 from collections.abc import Iterator, Mapping
 from functools import cached_property, partial
-from itertools import islice
+from itertools import chain, islice
 from math import inf, nextafter
 from numbers import Real
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, TypeAlias
 
 import numpy as np
 from numpy.typing import NDArray
@@ -35,6 +35,8 @@ if TYPE_CHECKING:
 
 Places = NDArray[np.int64]
 Reach = Mapping[str, Places]
+# another value, the System with it, and what differs there
+Look: TypeAlias = "tuple[Any, SystemData, Reach]"
 
 # by so much of their scale numbers are moved; those at a bound go to one side alone
 PROBES = (1e-3, -1.7e-3, 2.3e-3, -2.9e-3)
@@ -58,7 +60,7 @@ class SystemParameter:
     inputs: tuple[int, ...]  # numbers of the signals that it is, or is inside of
     _spec: Spec
     _system: SystemData
-    _beside: SystemData | None
+    _another: Any  # another value that it may have; None: there is none
 
     @property
     def is_signal(self) -> bool:
@@ -94,9 +96,10 @@ class SystemParameter:
         """Why it cannot change while a run goes on, and what to do instead; None: it can."""
         if self.is_signal:
             return None if self._spec.what in SIGNALS else SIGNAL
-        if self._beside is None:
+        other = None if self._another is None else _changed(self._system, self.name, self._another)
+        if other is None:
             return OTHER
-        return stays(self._system, self._system, self._beside) or (None if self.reach else NOTHING)
+        return stays(self._system, self._system, other) or (None if self.reach else NOTHING)
 
     @property
     def when(self) -> str:
@@ -137,14 +140,24 @@ def parameter(system: SystemData, name: str) -> SystemParameter:
     """One of them; its name must be known."""
     aim: Any = target(owners_of(system), name)
     value, spec = field_of(aim)
-    moved = ((there, made) for there in _others(value, spec) if (made := _changed(system, name, there)) is not None)
-    found = [(there, made, differing(system, made)) for there, made in islice(moved, 2)]
-    reach = next((reach for _, _, reach in found), None) or {}
-    is_number = isinstance(value, Real) and not is_shared(aim) and len(found) == 2 and bool(reach)
-    is_word = is_number and all(_is_value(made, there, reach, value) for value, made, there in found)
-    inputs = next((inputs for there, made, _ in found if (inputs := _inputs(system, made, aim, there))), ())
-    beside = next((made for _, made, _ in found), None)
-    return SystemParameter(name, value, unit_of(aim), bounds_of(spec), reach, is_word, inputs, spec, system, beside)
+    looks = islice(_looks(system, name, _others(value, spec)), 2)
+    first: Look = next(looks, (None, system, {}))
+    # a signal may be what is tried first
+    other, made, reach = first if first[2] else next((look for look in looks if look[2]), first)
+    is_number = isinstance(value, Real) and not isinstance(value, bool) and not is_shared(aim) and bool(reach)
+    # on both sides, which are assembled only where the first one is such
+    sides = chain([(other, made, reach)], looks)
+    is_word = is_number and all(_is_value(made, differs, reach, there) for there, made, differs in sides)
+    inputs = _inputs(system, made, aim, other)
+    return SystemParameter(name, value, unit_of(aim), bounds_of(spec), reach, is_word, inputs, spec, system, other)
+
+
+def _looks(system: SystemData, name: str, values: Iterator[Any]) -> Iterator[Look]:
+    """Values that are allowed, the System with each, and what differs there; nothing where arrays get other sizes."""
+    for value in values:
+        made = _changed(system, name, value)
+        if made is not None:
+            yield value, made, differing(system, made) or {}
 
 
 def is_shared(aim: Target) -> bool:
