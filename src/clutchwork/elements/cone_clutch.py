@@ -44,7 +44,6 @@ class ConeClutch(Contact):
     force: SignalLike = signal("N", "axial force; below zero counts as zero", presses=True)
 
     def problems(self) -> Found:
-        """What the bounds of single values cannot say, as (quantity, what is wrong, remedy)."""
         return ring_problems(self.radius, self.outer_diameter, self.inner_diameter)
 
     @property
