@@ -18,6 +18,7 @@ from clutchwork.assembly.wiring import wiring
 from clutchwork.base import archive
 from clutchwork.base.classes import dataclass
 from clutchwork.base.errors import ClutchworkError, ModelWarning
+from clutchwork.base.extras import program
 from clutchwork.base.paths import path_of
 from clutchwork.base.quote import listed, shortened
 from clutchwork.base.regular import reason
@@ -25,7 +26,6 @@ from clutchwork.declare.calls import explained
 from clutchwork.declare.layout import MODES, STATUSES
 from clutchwork.declare.options import Options
 from clutchwork.declare.wording import say
-from clutchwork.exchange.content import program
 from clutchwork.results.channels import channels
 from clutchwork.results.events import Event, Events
 from clutchwork.results.state import State
