@@ -390,7 +390,7 @@ def test_a_ratio_that_holds_shafts_or_frees_them():
 
 def test_bytes_have_no_names():
     system = cw.System.from_bytes(six_speed.gearbox(six_speed.SHIFT).assemble().to_bytes())
-    with pytest.raises(cw.ModelError, match="numbers without names, because it was made from bytes"):
+    with pytest.raises(cw.ModelError, match="no names for its numbers, because it was made from bytes"):
         system.changed({"F1.gain": 1.0})
 
 

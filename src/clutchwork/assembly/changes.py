@@ -35,7 +35,7 @@ S = TypeVar("S", bound=SystemData)
 UNKNOWN_SOURCE = Problem(
     "system",
     "",
-    "has numbers without names, because it was made from bytes",
+    "has no names for its numbers, because it was made from bytes",
     remedy="assemble its driveline, or read a file of System.save",
 )
 

@@ -78,7 +78,7 @@ class Primal:
         return found
 
     def bends_at(self, columns: Places, times: Array) -> NDArray[np.bool_]:
-        """Whether numbers of a row bend or jump at some instants with a knot that moves."""
+        """Whether a moving knot gives these columns a kink or a jump at each of the instants."""
         if not len(self.knots.times) and not len(self.knots.meets):
             return np.zeros(len(times), dtype=bool)
         knots = np.r_[self.knots.times, self.knots.meets]

@@ -88,7 +88,7 @@ def _about(data: bytes, path: str | Path) -> Mapping[str, Any]:
         raise RunFormatError(f"{path} was saved by {by} in format {about['format']}; {here} reads {FORMAT}: update it")
     missing = [key for key in ("system", "t_end", "options", "status", "message", "statistics") if key not in about]
     if missing:
-        raise ValueError(f"it does not say {listed(missing)}")
+        raise ValueError(f"it lacks {listed(missing)}")
     if about["status"] not in STATUSES:
         raise ValueError("its status is none that a run has")
     return about
