@@ -12,14 +12,18 @@ import numpy as np
 from numpy.typing import NDArray
 
 from clutchwork.base.classes import dataclass
-from clutchwork.base.errors import UseError
+from clutchwork.base.errors import UnknownName, UseError
 from clutchwork.base.quote import quote
+from clutchwork.calibration.names import curve
 from clutchwork.calibration.numbers import number, pair
 from clutchwork.declare.calls import explained
+from clutchwork.results.channels import channels
 from clutchwork.results.felt import WINDOW, felt_jerk
 from clutchwork.sweeps.outputs import AtEnd, AtTimes, Computed, Extreme, Integral, Output, SquaredJerk, When, named
+from clutchwork.sweeps.result import unit_of
 
 if TYPE_CHECKING:
+    from clutchwork.assembly.system import System
     from clutchwork.calibration.names import TimeTable
     from clutchwork.gradients.parameters import Tunable
     from clutchwork.run.trajectory import Trajectory
@@ -51,14 +55,25 @@ def length(output: Any) -> int:
     return len(output.times) if isinstance(output, AtTimes) else 1
 
 
-class UnitOf(Protocol):
-    """Units of a model."""
+class OutputUnits:
+    """Units of outputs and tables of a System; what is not there is without one, and refused where it is run."""
+
+    def __init__(self, system: System) -> None:
+        self.system, self.channels = system, channels(system, True, True)
 
     def output(self, one: Any) -> str:
         """Of an output of a run."""
+        try:
+            return unit_of(one, self.channels)
+        except UnknownName:
+            return ""
 
     def table(self, stem: str) -> str:
         """Of the values of a table."""
+        try:
+            return curve(self.system, stem).values[0].unit
+        except UseError:
+            return ""
 
 
 # a jump of the acceleration is a triangle of the jerk, two windows wide; its peak lies between two instants and is
@@ -79,7 +94,7 @@ class Term(Protocol):
     def needs(self, span: TimeSpan) -> list[Any]:
         """The outputs of a run that it is made of."""
 
-    def unit(self, units: UnitOf) -> str:
+    def unit(self, units: OutputUnits) -> str:
         """Its unit."""
 
     def rows(self, given: TermData) -> Rows:
@@ -101,7 +116,7 @@ class OutputTerm:
         """Itself."""
         return [self.output]
 
-    def unit(self, units: UnitOf) -> str:
+    def unit(self, units: OutputUnits) -> str:
         """That of the output."""
         return units.output(self.output)
 
@@ -122,7 +137,7 @@ class OfShaft:
         """What messages call it."""
         return f"{self.word}({self.shaft})"
 
-    def unit(self, units: UnitOf) -> str:
+    def unit(self, units: OutputUnits) -> str:
         """Of its speed, over seconds squared."""
         return RATES.get(units.output(AtEnd(f"{self.shaft}.speed")), "")
 
@@ -212,7 +227,7 @@ class TableSlope(OfTable):
 
     word: ClassVar[str] = "slope"
 
-    def unit(self, units: UnitOf) -> str:
+    def unit(self, units: OutputUnits) -> str:
         """Of the table, a second."""
         return f"{units.table(self.stem)}/s"
 
@@ -229,7 +244,7 @@ class SquaredSlope(OfTable):
 
     word: ClassVar[str] = "squared_slope"
 
-    def unit(self, units: UnitOf) -> str:
+    def unit(self, units: OutputUnits) -> str:
         """Of the table squared, a second."""
         return f"({units.table(self.stem)})2/s"
 
