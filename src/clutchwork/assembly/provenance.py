@@ -11,7 +11,6 @@ import warnings
 from collections.abc import Iterator, Mapping
 from functools import cached_property, partial
 from itertools import chain, islice
-from math import inf, nextafter
 from numbers import Real
 from typing import TYPE_CHECKING, Any, TypeAlias
 
@@ -149,7 +148,7 @@ def parameter(system: SystemData, name: str) -> SystemParameter:
     sides = chain([(other, made, reach)], looks)
     is_word = is_number and all(_is_value(made, differs, reach, there) for there, made, differs in sides)
     inputs = _inputs(system, made, aim, other)
-    return SystemParameter(name, value, unit_of(aim), bounds_of(spec), reach, is_word, inputs, spec, system, other)
+    return SystemParameter(name, value, unit_of(aim), spec.ends, reach, is_word, inputs, spec, system, other)
 
 
 def _looks(system: SystemData, name: str, values: Iterator[Any]) -> Iterator[Look]:
@@ -163,15 +162,6 @@ def _looks(system: SystemData, name: str, values: Iterator[Any]) -> Iterator[Loo
 def is_shared(aim: Target) -> bool:
     """Whether the assembly makes something of a number together with others, such as the larger of two."""
     return field_of(aim)[1].what == "option" or aim.path[-1] == "band"
-
-
-def bounds_of(*found: Spec) -> tuple[float, float]:
-    """The least and the largest number that all declarations allow."""
-    lower = [nextafter(spec.above, inf) for spec in found if spec.above is not None]
-    upper = [nextafter(spec.below, -inf) for spec in found if spec.below is not None]
-    lower += [spec.at_least for spec in found if spec.at_least is not None]
-    upper += [spec.at_most for spec in found if spec.at_most is not None]
-    return max(lower, default=-inf), min(upper, default=inf)
 
 
 def differing(one: SystemData, other: SystemData) -> Reach | None:

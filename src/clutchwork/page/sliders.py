@@ -6,14 +6,14 @@ from collections.abc import Collection, Sequence
 from contextlib import suppress
 from dataclasses import replace
 from itertools import combinations
-from math import inf, isfinite
+from math import isfinite
 from numbers import Real
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from clutchwork.base.errors import UseError
-from clutchwork.declare.schema import Spec
+from clutchwork.declare.schema import Spec, common_ends
 from clutchwork.model.changes import Target, all_names, field_of, in_si, named, target, targets_of, unit_of
 from clutchwork.page.slider import Bytes, Slider, Words, start_of
 from clutchwork.page.together import dependent, made, words_of
@@ -177,9 +177,8 @@ def _span(aim: Target, name: str, text: str, starts: Sequence[float], declared: 
     if not any(starts):
         raise ValueError(f"{name} is 0: give the ends of its slider, {name}=0:10")
     reach = [factor * start for start in starts for factor in (0.5, 2.0)]
-    least = [-inf if bound is None else bound for spec in declared for bound in (spec.at_least, spec.above)]
-    most = [inf if bound is None else bound for spec in declared for bound in (spec.at_most, spec.below)]
-    return max(min(reach), *least), min(max(reach), *most)
+    least, most = common_ends(declared)
+    return max(min(reach), least), min(max(reach), most)
 
 
 def _number(aim: Target, name: str, text: str) -> float:
