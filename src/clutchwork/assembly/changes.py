@@ -85,8 +85,6 @@ def anew(
     with words_of_files(source.from_file):
         model = changed_model(source, {name: _kept(value) for name, value in changes.items()})
         found = findings(model)
-        if found.problems:
-            raise ModelError(found.problems, model.name)
         try:
             made = assembled(model, independent, found)
         except ArithmeticError:

@@ -107,7 +107,7 @@ class Primal:
 
     @cached_property
     def meets(self) -> list[tuple[float, int]]:
-        """Instants at which knots meet others that move otherwise [s], and the steps that begin there."""
+        """Instants [s] at which a knot meets one that moves differently, and the steps that begin there."""
         ends = np.r_[self.steps.begin, self.steps.end[-1:]]
         return [(float(time), int(np.argmin(np.abs(ends - time)))) for time in self.knots.meets] if len(ends) else []
 

@@ -191,16 +191,15 @@ def _below(name: str, thing: Any) -> Iterator[str]:
 
 
 def changed_model(model: Model, changes: Mapping[str, Any]) -> Model:
-    """The model with other values; ModelError names all that is unknown, and what is wrong with the others."""
+    """The model with other values; ModelError names all that is unknown, and all that is wrong with the others."""
     targets, problems = targets_of(model, changes)
     new = _renewed_things(model, [(found, changes[name]) for name, found in targets.items()])
     # what has mistakes of its own cannot be taken apart
     wrong = [problem for thing in new.values() for problem in _own_problems(thing)]
-    if wrong:
-        raise ModelError([*problems, *wrong], model.name)
-    made = _with_things(model, new)
+    made = model if wrong else _with_things(model, new)
+    problems += wrong or findings(made).problems
     if problems:
-        raise ModelError([*problems, *findings(made).problems], model.name)
+        raise ModelError(problems, model.name)
     return made
 
 
