@@ -127,7 +127,7 @@ def test_the_table_says_what_a_run_takes(cls: Any) -> None:
         for one in known:
             if any(one.name.startswith(f"{signal}.") for signal in sim._outside.signals):
                 continue
-            value = one._beside and next(iter(_given(one)), None)
+            value = one._another
             if value is None:
                 continue
             try:
@@ -137,12 +137,6 @@ def test_the_table_says_what_a_run_takes(cls: Any) -> None:
             except ModelError as error:
                 taken = error.problems[0].message
             assert taken == ("" if one.stays is None else one.stays.why), one.name
-
-
-def _given(one: SystemParameter) -> list[float]:
-    """The value of the System beside."""
-    assert one._beside is not None
-    return [float(one._beside.parameters[one.name].value)]
 
 
 class Scaled(cw.Damper):

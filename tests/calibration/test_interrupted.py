@@ -58,7 +58,7 @@ def test_a_file_goes_on_from_there(tmp_path):
 def test_a_file_of_something_else_is_refused(tmp_path):
     path = tmp_path / "launch.json"
     Launch().least_heat(15, file=path)
-    with pytest.raises(cw.UseError, match="of another model, goal, limit or setting"):
+    with pytest.raises(cw.UseError, match="belongs to another model, goal, limit or setting"):
         Launch(speed=90.0).least_heat(15, file=path)
     path.write_text("{}", encoding="utf-8")
     with pytest.raises(cw.UseError, match="holds no calibration"):

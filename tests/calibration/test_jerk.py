@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 import clutchwork as cw
-from clutchwork.calibration.terms import PER_WINDOW
+from clutchwork.calibration.terms import PER_WINDOW, OutputUnits
 from support.engagement import BOTH, GAIN, LINING, LOAD, PRESSURE, SPEED, discs
 
 WINDOW = 0.1
@@ -68,3 +68,11 @@ def test_one_definition_in_sweeps_calibrations_and_shifts():
 def test_a_run_that_is_too_short_has_none_in_a_sweep():
     found = cw.sweep(discs(), 0.1, vary=[{}], outputs={"j": cw.jerk("load", WINDOW)})["j"].ravel()[0]
     assert np.isnan(found)
+
+
+def test_units_of_jerks_are_those_of_sweeps():
+    units = OutputUnits(discs().assemble())
+    swept = cw.sweep(discs(), 0.1, vary=[{}], outputs=[cw.squared_jerk("load")])
+    assert units.output(cw.squared_jerk("load")) == swept.units["squared_jerk(load)"] == "rad2/s5"
+    assert cw.jerk("load").unit(units) == "rad/s3"
+    assert units.output(cw.squared_jerk("lead")) == ""

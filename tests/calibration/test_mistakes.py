@@ -33,7 +33,7 @@ def refused(**given):
         ({"subject_to": cw.limit("c1.heat")}, "limit of c1.heat: give lower=, upper= or both"),
         ({"subject_to": cw.limit("c1.heat", upper="3 bar")}, "limit of c1.heat is '3 bar': give finite numbers in J"),
         ({"subject_to": cw.limit("c1.heat", 5.0, 4.0)}, "limit of c1.heat is 5.0 and 4.0"),
-        ({"solver": "ipopt"}, "solver was given, and SLSQP alone searches: leave it out"),
+        ({"solver": "ipopt"}, "solver is given, but SLSQP is the only solver: leave it out"),
         ({"robust": "best"}, "robust is 'best'"),
         ({"starts": 0}, "starts is 0: give a whole number of at least 1"),
         ({"tolerance": 2.0}, "tolerance is 2.0"),

@@ -118,7 +118,7 @@ def test_a_list_is_a_panel_with_two_axes(discs: cw.Trajectory) -> None:
     check(discs, figure, ["c1.torque", "c1.slip", "c1.heat", "engine.speed", "load.speed"])
     labels = [text.get_text() for text in figure.axes[0].get_legend().get_texts()]
     assert labels == ["c1.torque [N m]", "c1.slip [rad/s]"]
-    with pytest.raises(cw.UseError, match=r"has 3 units, one panel shows two; give a list for each of N m, rad/s, J"):
+    with pytest.raises(cw.UseError, match=r"has 3 units, a panel has two axes; give a list for each of N m, rad/s, J"):
         discs.plot(["c1.torque", "c1.slip", "c1.heat"])
 
 

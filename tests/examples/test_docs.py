@@ -193,7 +193,7 @@ def test_contributing_lists_the_rooms_that_are_enforced(monkeypatch: pytest.Monk
 
 def test_the_rooms_that_contributing_names_are_there() -> None:
     page = (ROOT / "CONTRIBUTING.md").read_text(encoding="utf-8")
-    rooms = page.partition("## Find the room")[2].partition("\n## ")[0]
+    rooms = page.partition("## Find the room")[2].partition("\n## House rules")[0]
     roots = (ROOT, ROOT / "src" / "clutchwork", ROOT / "cpp" / "include" / "clutchwork")
     paths = re.findall(r"`([\w./]+/(?:[\w.]+)?)`", rooms)
     assert len(paths) > 15

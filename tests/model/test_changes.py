@@ -15,9 +15,9 @@ import pytest
 import clutchwork as cw
 from clutchwork.assembly.wiring import wiring
 from clutchwork.declare.node import Law, Signal
-from clutchwork.declare.schema import REGISTRY, Role, specs
+from clutchwork.declare.schema import REGISTRY, Role, Spec, specs
 from clutchwork.elements.bases.shift_elements import LINING
-from clutchwork.model.changes import FIXED, PLACES, all_names, named, target
+from clutchwork.model.changes import FIXED, PLACES, all_names, field_of, named, target
 from clutchwork.results.channels import Channels
 from support import random_drivelines, samples, six_speed
 from support.amount import amount
@@ -198,6 +198,42 @@ def test_every_value_of_every_element(cls):
     assert not found, "\n".join(found)
 
 
+def out_of_bounds(spec: Spec) -> list[Any]:
+    """Values that a declaration of a number forbids."""
+    if spec.choices or spec.flag:
+        return ["no such choice"]
+    fractions = [2.5] if spec.whole else []
+    beyond = [bound for bound in (spec.above, spec.below) if bound is not None]
+    below = [bound - 1 for bound in (spec.at_least,) if bound is not None]
+    return [*fractions, *beyond, *below, *(bound + 1 for bound in (spec.at_most,) if bound is not None), np.nan, "much"]
+
+
+def refusal(make: Any, *args: Any) -> list[tuple[str, str]]:
+    """What is said of values that are wrong."""
+    try:
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore", cw.ModelWarning)
+            make(*args)
+    except cw.ModelError as error:
+        return [(problem.message, problem.remedy) for problem in error.problems]
+    return []
+
+
+@pytest.mark.parametrize("cls", samples.declared(*samples.ELEMENT_ROLES), ids=lambda cls: cls.kind)
+def test_values_out_of_their_bounds_are_refused_as_by_the_driveline(cls):
+    system = built(samples.driveline(cls).assemble().model)
+    found = list[str]()
+    for name in all_names(system.source):
+        value, spec = field_of(target(named(system.source), name))
+        for wrong in out_of_bounds(spec) if spec.what in ("param", "option") else ():
+            expected = refusal(built, edited(system.model, {name: wrong}))
+            said_of = refusal(system.changed, {name: wrong})
+            # a file that is read says of strings that they are no unit before it looks at the value
+            if not said_of or not set(said_of) <= set(expected):
+                found.append(f"{name} = {wrong!r} in place of {value!r}: {said_of}, not {expected}")
+    assert not found, "\n".join(found)
+
+
 @pytest.mark.parametrize("cls", samples.declared(Role.LAW), ids=lambda cls: cls.kind)
 def test_every_value_of_every_law(cls):
     def driveline():
@@ -354,7 +390,7 @@ def test_a_ratio_that_holds_shafts_or_frees_them():
 
 def test_bytes_have_no_names():
     system = cw.System.from_bytes(six_speed.gearbox(six_speed.SHIFT).assemble().to_bytes())
-    with pytest.raises(cw.ModelError, match="numbers without names, because it was made from bytes"):
+    with pytest.raises(cw.ModelError, match="no names for its numbers, because it was made from bytes"):
         system.changed({"F1.gain": 1.0})
 
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import inspect
 import sys
 from dataclasses import MISSING, FrozenInstanceError
 from pathlib import Path
@@ -36,6 +37,12 @@ def test_class_and_fields_say_what_they_are(cls):
     for item, spec in specs(cls):
         assert spec.doc, item.name
         assert spec.doc[0].islower(), f"{item.name}: {spec.doc}"
+
+
+@pytest.mark.parametrize("cls", ALL, ids=lambda cls: cls.__name__)
+def test_methods_say_what_they_do_or_are_said_by_their_base(cls):
+    found = [name for name, item in inspect.getmembers(cls) if callable(item) or isinstance(item, property)]
+    assert [name for name in found if name[0] != "_" and not inspect.getdoc(getattr(cls, name))] == []
 
 
 @pytest.mark.parametrize("cls", ALL, ids=lambda cls: cls.__name__)

@@ -35,7 +35,7 @@ S = TypeVar("S", bound=SystemData)
 UNKNOWN_SOURCE = Problem(
     "system",
     "",
-    "has numbers without names, because it was made from bytes",
+    "has no names for its numbers, because it was made from bytes",
     remedy="assemble its driveline, or read a file of System.save",
 )
 
@@ -85,8 +85,6 @@ def anew(
     with words_of_files(source.from_file):
         model = changed_model(source, {name: _kept(value) for name, value in changes.items()})
         found = findings(model)
-        if found.problems:
-            raise ModelError(found.problems, model.name)
         try:
             made = assembled(model, independent, found)
         except ArithmeticError:

@@ -10,10 +10,9 @@ from __future__ import annotations
 import warnings
 from collections.abc import Iterator, Mapping
 from functools import cached_property, partial
-from itertools import islice
-from math import inf, nextafter
+from itertools import chain, islice
 from numbers import Real
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, TypeAlias
 
 import numpy as np
 from numpy.typing import NDArray
@@ -35,6 +34,8 @@ if TYPE_CHECKING:
 
 Places = NDArray[np.int64]
 Reach = Mapping[str, Places]
+# another value, the System with it, and what differs there
+Look: TypeAlias = "tuple[Any, SystemData, Reach]"
 
 # by so much of their scale numbers are moved; those at a bound go to one side alone
 PROBES = (1e-3, -1.7e-3, 2.3e-3, -2.9e-3)
@@ -60,7 +61,7 @@ class SystemParameter:
     inputs: tuple[int, ...]  # numbers of the signals that it is, or is inside of
     _spec: Spec
     _system: SystemData
-    _beside: SystemData | None
+    _another: Any  # another value that it may have; None: there is none
 
     @property
     def about(self) -> str:
@@ -101,9 +102,10 @@ class SystemParameter:
         """Why it cannot change while a run goes on, and what to do instead; None: it can."""
         if self.is_signal:
             return None if self._spec.what in SIGNALS else SIGNAL
-        if self._beside is None:
+        other = None if self._another is None else _changed(self._system, self.name, self._another)
+        if other is None:
             return OTHER
-        return stays(self._system, self._system, self._beside) or (None if self.reach else NOTHING)
+        return stays(self._system, self._system, other) or (None if self.reach else NOTHING)
 
     @cached_property
     def slopes(self) -> NDArray[np.float64] | None:
@@ -163,28 +165,29 @@ def parameter(system: SystemData, name: str) -> SystemParameter:
     """One of them; its name must be known."""
     aim: Any = target(owners_of(system), name)
     value, spec = field_of(aim)
-    moved = ((there, made) for there in _others(value, spec) if (made := _changed(system, name, there)) is not None)
-    found = [(there, made, differing(system, made)) for there, made in islice(moved, 2)]
-    reach = next((reach for _, _, reach in found), None) or {}
-    is_number = isinstance(value, Real) and not is_shared(aim) and len(found) == 2 and bool(reach)
-    is_word = is_number and all(_is_value(made, there, reach, value) for value, made, there in found)
-    inputs = next((inputs for there, made, _ in found if (inputs := _inputs(system, made, aim, there))), ())
-    beside = next((made for _, made, _ in found), None)
-    return SystemParameter(name, value, unit_of(aim), bounds_of(spec), reach, is_word, inputs, spec, system, beside)
+    looks = islice(_looks(system, name, _others(value, spec)), 2)
+    first: Look = next(looks, (None, system, {}))
+    # a signal may be what is tried first
+    other, made, reach = first if first[2] else next((look for look in looks if look[2]), first)
+    is_number = isinstance(value, Real) and not isinstance(value, bool) and not is_shared(aim) and bool(reach)
+    # on both sides, which are assembled only where the first one is such
+    sides = chain([(other, made, reach)], looks)
+    is_word = is_number and all(_is_value(made, differs, reach, there) for there, made, differs in sides)
+    inputs = _inputs(system, made, aim, other)
+    return SystemParameter(name, value, unit_of(aim), spec.ends, reach, is_word, inputs, spec, system, other)
+
+
+def _looks(system: SystemData, name: str, values: Iterator[Any]) -> Iterator[Look]:
+    """Values that are allowed, the System with each, and what differs there; nothing where arrays get other sizes."""
+    for value in values:
+        made = _changed(system, name, value)
+        if made is not None:
+            yield value, made, differing(system, made) or {}
 
 
 def is_shared(aim: Target) -> bool:
     """Whether the assembly makes something of a number together with others, such as the larger of two."""
     return field_of(aim)[1].what == "option" or aim.path[-1] == "band"
-
-
-def bounds_of(*found: Spec) -> tuple[float, float]:
-    """The least and the largest number that all declarations allow."""
-    lower = [nextafter(spec.above, inf) for spec in found if spec.above is not None]
-    upper = [nextafter(spec.below, -inf) for spec in found if spec.below is not None]
-    lower += [spec.at_least for spec in found if spec.at_least is not None]
-    upper += [spec.at_most for spec in found if spec.at_most is not None]
-    return max(lower, default=-inf), min(upper, default=inf)
 
 
 def differing(one: SystemData, other: SystemData) -> Reach | None:

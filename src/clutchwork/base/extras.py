@@ -17,3 +17,14 @@ def need(module: str, extra: str, use: str = "this") -> Any:
     except ImportError as error:
         package = module.partition(".")[0]
         raise ImportError(f"{use} needs {package}: pip install 'clutchwork[{extra}]'") from error
+
+
+def program() -> str:
+    """Name and version of what writes a file."""
+    # brings some fifty modules
+    from importlib.metadata import PackageNotFoundError, version
+
+    try:
+        return f"clutchwork {version('clutchwork')}"
+    except PackageNotFoundError:
+        return "clutchwork (not installed)"

@@ -23,7 +23,7 @@ class Frozen(dict[str, Any]):
 
 
 def frozen(value: Any) -> Any:
-    """Tables and lists, and those inside of them, as ones that never change; anything else as it is."""
+    """Immutable copies of tables and lists, nested ones included; anything else is returned unchanged."""
     if isinstance(value, Mapping):
         return Frozen({key: frozen(item) for key, item in value.items()})
     return tuple(map(frozen, value)) if isinstance(value, list) else value

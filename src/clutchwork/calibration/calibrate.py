@@ -82,7 +82,7 @@ def calibrate(
     mistakes of the call are named at once, by UseError. docs/guide/calibrate.md
     """
     if "solver" in changes:
-        raise UseError("calibrate", ["solver was given, and SLSQP alone searches: leave it out"])
+        raise UseError("calibrate", ["solver is given, but SLSQP is the only solver: leave it out"])
     system = model_of("calibrate", model, options)
     given = {**changes} if t_end is None else {**changes, "t_end": t_end}
     tight = {name: value for name, value in TIGHT.items() if name not in changes and options is None}

@@ -14,13 +14,13 @@ from clutchwork.base.quote import quote
 from clutchwork.calibration.numbers import bounds, number
 from clutchwork.calibration.terms import (
     Jerk,
+    OutputUnits,
     Rows,
     SquaredSlope,
     TableSlope,
     Term,
     TermData,
     TimeSpan,
-    UnitOf,
     is_computed,
     length,
     term,
@@ -84,7 +84,7 @@ class WeightedSum:
         none = np.zeros(0)
         return len(one.rows(TermData(np.zeros(needed), np.zeros((needed, 0)), none, {}, curves, span))[0])
 
-    def unit(self, units: UnitOf) -> str:
+    def unit(self, units: OutputUnits) -> str:
         """That of its terms where all have one."""
         found = {one.unit(units) for one, _ in self.terms}
         return found.pop() if len(found) == 1 else ""
@@ -124,7 +124,7 @@ class Limit:
     upper: Any
     name: str = ""
 
-    def settled(self, units: UnitOf) -> tuple[Settled | None, list[str]]:
+    def settled(self, units: OutputUnits) -> tuple[Settled | None, list[str]]:
         """With numbers in SI, or all that is wrong with it."""
         found, fault = summed(self.what)
         if found is None:

@@ -74,7 +74,7 @@ def _read(path: Path, key: str) -> dict[int, Outcome]:
     if not fits:
         raise UseError("calibrate", [f"file {str(path)!r} holds no calibration; {remedy}"])
     if other:
-        raise UseError("calibrate", [f"file {str(path)!r} is of another model, goal, limit or setting; {remedy}"])
+        raise UseError("calibrate", [f"file {str(path)!r} belongs to another model, goal, limit or setting; {remedy}"])
     return {one.number: one for one in found}
 
 

@@ -17,11 +17,9 @@ from clutchwork.calibration.limits import Limit, Settled, WeightedSum, summed
 from clutchwork.calibration.moves import Moves, Variable
 from clutchwork.calibration.names import TimeTable, curve, numbers
 from clutchwork.calibration.numbers import pair
-from clutchwork.calibration.terms import SquaredSlope, TimeSpan
+from clutchwork.calibration.terms import OutputUnits, SquaredSlope, TimeSpan
 from clutchwork.calibration.together import FACTOR, VALUE, Together
 from clutchwork.gradients.parameters import changes
-from clutchwork.results.channels import channels
-from clutchwork.sweeps.outputs import Integral, When
 
 if TYPE_CHECKING:
     from clutchwork.assembly.system import System
@@ -84,27 +82,6 @@ class CalibrationProblem:
     def high(self) -> Array:
         """Upper bounds of the unknowns."""
         return np.array([one.high for one in self.unknowns])
-
-
-class OutputUnits:
-    """Units of outputs and tables of a System; what is not there is without one, and refused where it is run."""
-
-    def __init__(self, system: System) -> None:
-        self.system, self.channels = system, channels(system, True, True)
-
-    def output(self, one: Any) -> str:
-        """Of an output of a run."""
-        if isinstance(one, When):
-            return "s"
-        name = one.kept_as(self.channels) if isinstance(one, Integral) else one.signal
-        return str(self.channels[name].unit) if name in self.channels else ""
-
-    def table(self, stem: str) -> str:
-        """Of the values of a table."""
-        try:
-            return curve(self.system, stem).values[0].unit
-        except UseError:
-            return ""
 
 
 class Mistakes:

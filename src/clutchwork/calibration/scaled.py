@@ -126,7 +126,7 @@ class Scaled:
         self.start, self.reach = self.lifted(y, self.point(y)), reach
 
     def lifted(self, y: Array, found: Evaluation) -> Array:
-        """The same unknowns, and the least bound of the values of the goal where it has several."""
+        """The unknowns, with the last one raised to the largest of several values of the goal."""
         made = y.copy()
         if self.worst and found.is_fine:
             made[-1] = float(np.max(found.values[:, self.evaluator.parts[0]])) / self.goal_scale

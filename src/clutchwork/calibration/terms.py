@@ -6,20 +6,24 @@ Each term gives one number or several with their derivatives by the numbers of t
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from typing import TYPE_CHECKING, Any, NamedTuple, Protocol, TypeAlias
+from typing import TYPE_CHECKING, Any, ClassVar, NamedTuple, Protocol, TypeAlias
 
 import numpy as np
 from numpy.typing import NDArray
 
 from clutchwork.base.classes import dataclass
-from clutchwork.base.errors import UseError
+from clutchwork.base.errors import UnknownName, UseError
 from clutchwork.base.quote import quote
+from clutchwork.calibration.names import curve
 from clutchwork.calibration.numbers import number, pair
 from clutchwork.declare.calls import explained
+from clutchwork.results.channels import channels
 from clutchwork.results.felt import WINDOW, felt_jerk
-from clutchwork.sweeps.outputs import AtEnd, AtTimes, Computed, Extreme, Integral, Output, SquaredJerk, When
+from clutchwork.sweeps.outputs import AtEnd, AtTimes, Computed, Extreme, Integral, Output, SquaredJerk, When, named
+from clutchwork.sweeps.result import unit_of
 
 if TYPE_CHECKING:
+    from clutchwork.assembly.system import System
     from clutchwork.calibration.names import TimeTable
     from clutchwork.gradients.parameters import Tunable
     from clutchwork.run.trajectory import Trajectory
@@ -51,14 +55,25 @@ def length(output: Any) -> int:
     return len(output.times) if isinstance(output, AtTimes) else 1
 
 
-class UnitOf(Protocol):
-    """Units of a model."""
+class OutputUnits:
+    """Units of outputs and tables of a System; what is not there is without one, and refused where it is run."""
+
+    def __init__(self, system: System) -> None:
+        self.system, self.channels = system, channels(system, True, True)
 
     def output(self, one: Any) -> str:
         """Of an output of a run."""
+        try:
+            return unit_of(one, self.channels)
+        except UnknownName:
+            return ""
 
     def table(self, stem: str) -> str:
         """Of the values of a table."""
+        try:
+            return curve(self.system, stem).values[0].unit
+        except UseError:
+            return ""
 
 
 # a jump of the acceleration is a triangle of the jerk, two windows wide; its peak lies between two instants and is
@@ -79,7 +94,7 @@ class Term(Protocol):
     def needs(self, span: TimeSpan) -> list[Any]:
         """The outputs of a run that it is made of."""
 
-    def unit(self, units: UnitOf) -> str:
+    def unit(self, units: OutputUnits) -> str:
         """Its unit."""
 
     def rows(self, given: TermData) -> Rows:
@@ -101,7 +116,7 @@ class OutputTerm:
         """Itself."""
         return [self.output]
 
-    def unit(self, units: UnitOf) -> str:
+    def unit(self, units: OutputUnits) -> str:
         """That of the output."""
         return units.output(self.output)
 
@@ -111,17 +126,46 @@ class OutputTerm:
 
 
 @dataclass(frozen=True)
-class Jerk:
-    """The size of the jerk of a shaft or a mass, averaged over windows: second differences of its speed."""
+class OfShaft:
+    """A term made of the jerk of a shaft or a mass."""
 
+    word: ClassVar[str]
     shaft: str
-    window: float  # s
-    between: tuple[float, float] | None = None  # s
 
     @property
     def name(self) -> str:
         """What messages call it."""
-        return f"jerk({self.shaft})"
+        return f"{self.word}({self.shaft})"
+
+    def unit(self, units: OutputUnits) -> str:
+        """Of its speed, over seconds squared."""
+        return RATES.get(units.output(AtEnd(f"{self.shaft}.speed")), "")
+
+
+@dataclass(frozen=True)
+class OfTable:
+    """A term made of the pieces of a table, which needs no run."""
+
+    word: ClassVar[str]
+    stem: str
+
+    @property
+    def name(self) -> str:
+        """What messages call it."""
+        return f"{self.word}({self.stem})"
+
+    def needs(self, span: TimeSpan) -> list[Any]:  # noqa: ARG002, others do
+        """No run."""
+        return []
+
+
+@dataclass(frozen=True)
+class Jerk(OfShaft):
+    """The size of the jerk of a shaft or a mass, averaged over windows: second differences of its speed."""
+
+    word: ClassVar[str] = "jerk"
+    window: float  # s
+    between: tuple[float, float] | None = None  # s
 
     def needs(self, span: TimeSpan) -> list[Any]:
         """Its speed at instants that lie a small part of a window apart."""
@@ -144,10 +188,6 @@ class Jerk:
         return [f"{self.name}: two windows of {self.window:g} s take {2.0 * self.window:g} s, {have}; give a window= "
                 "or between= that fits, or a longer run"]  # fmt: skip
 
-    def unit(self, units: UnitOf) -> str:
-        """Of its speed, over seconds squared."""
-        return RATES.get(units.output(AtEnd(f"{self.shaft}.speed")), "")
-
     def rows(self, given: TermData) -> Rows:
         """Two values for each window: of either sign, the larger one is the size."""
         # docs/theory/jerk.md (1)
@@ -164,23 +204,14 @@ class Jerk:
 
 
 @dataclass(frozen=True)
-class RmsJerk:
+class RmsJerk(OfShaft):
     """The root of the mean square of the jerk of a shaft or a mass over the run."""
 
-    shaft: str
-
-    @property
-    def name(self) -> str:
-        """What messages call it."""
-        return f"rms_jerk({self.shaft})"
+    word: ClassVar[str] = "rms_jerk"
 
     def needs(self, span: TimeSpan) -> list[Any]:  # noqa: ARG002, others do
         """The integral of its square."""
         return [SquaredJerk(self.shaft)]
-
-    def unit(self, units: UnitOf) -> str:
-        """Of its speed, over seconds squared."""
-        return RATES.get(units.output(AtEnd(f"{self.shaft}.speed")), "")
 
     def rows(self, given: TermData) -> Rows:
         """One value."""
@@ -191,21 +222,12 @@ class RmsJerk:
 
 
 @dataclass(frozen=True)
-class TableSlope:
+class TableSlope(OfTable):
     """Slopes of the pieces of a table."""
 
-    stem: str
+    word: ClassVar[str] = "slope"
 
-    @property
-    def name(self) -> str:
-        """What messages call it."""
-        return f"slope({self.stem})"
-
-    def needs(self, span: TimeSpan) -> list[Any]:  # noqa: ARG002, others do
-        """No run."""
-        return []
-
-    def unit(self, units: UnitOf) -> str:
+    def unit(self, units: OutputUnits) -> str:
         """Of the table, a second."""
         return f"{units.table(self.stem)}/s"
 
@@ -217,21 +239,12 @@ class TableSlope:
 
 
 @dataclass(frozen=True)
-class SquaredSlope:
+class SquaredSlope(OfTable):
     """The integral over time of the square of the slope of a table."""
 
-    stem: str
+    word: ClassVar[str] = "squared_slope"
 
-    @property
-    def name(self) -> str:
-        """What messages call it."""
-        return f"squared_slope({self.stem})"
-
-    def needs(self, span: TimeSpan) -> list[Any]:  # noqa: ARG002, others do
-        """No run."""
-        return []
-
-    def unit(self, units: UnitOf) -> str:
+    def unit(self, units: OutputUnits) -> str:
         """Of the table squared, a second."""
         return f"({units.table(self.stem)})2/s"
 
@@ -286,7 +299,7 @@ def jerk(shaft: str, window: Any = WINDOW, between: Any = None) -> Jerk:
     ends = None if between is None else pair(between, "s")
     if between is not None and (ends is None or ends[1] - ends[0] < 2.0 * length):
         raise UseError("jerk", [f"between is {quote(between)}: give two times [s], two windows apart or more"])
-    return Jerk(_named("jerk", shaft), length, ends)
+    return Jerk(named("jerk", shaft, "car"), length, ends)
 
 
 @explained("cw.rms_jerk", shaft="'car'")
@@ -295,7 +308,7 @@ def rms_jerk(shaft: str) -> RmsJerk:
 
     Parameters: shaft, its name. Jumps of the acceleration do not count, as in `cw.squared_jerk`.
     """
-    return RmsJerk(_named("rms_jerk", shaft))
+    return RmsJerk(named("rms_jerk", shaft, "car"))
 
 
 @explained("cw.slope", signal="'c1.pressure'")
@@ -304,7 +317,7 @@ def slope(signal: str) -> TableSlope:
 
     Parameters: signal, the name of the table, such as "c1.pressure".
     """
-    return TableSlope(_named("slope", signal))
+    return TableSlope(named("slope", signal, "c1.pressure"))
 
 
 @explained("cw.squared_slope", signal="'c1.pressure'")
@@ -313,13 +326,7 @@ def squared_slope(signal: str) -> SquaredSlope:
 
     Parameters: signal, the name of the table, such as "c1.pressure".
     """
-    return SquaredSlope(_named("squared_slope", signal))
-
-
-def _named(call: str, name: object) -> str:
-    if not isinstance(name, str):
-        raise UseError(call, [f"{quote(name)} is not a name; give one such as 'c1.pressure'"])
-    return name
+    return SquaredSlope(named("squared_slope", signal, "c1.pressure"))
 
 
 def term(given: Any) -> Term | None:

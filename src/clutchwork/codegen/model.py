@@ -8,7 +8,7 @@ from math import inf, nextafter
 
 import numpy as np
 
-from clutchwork.assembly.provenance import SystemParameter, bounds_of
+from clutchwork.assembly.provenance import SystemParameter
 from clutchwork.assembly.system import System
 from clutchwork.assembly.wiring import Wiring, wiring
 from clutchwork.base.c_literal import literal
@@ -163,7 +163,7 @@ def _enumerations(model: Exported) -> Iterator[str]:
 
 def _input(model: Exported, number: int) -> str:
     item, spec = model.system.inputs[number], model.system.inputs[number].spec
-    words = f"{item.name} [{item.unit}]{_within(bounds_of(spec))}"
+    words = f"{item.name} [{item.unit}]{_within(spec.ends)}"
     return f"{words}, from outside alone" if number in model.outside else words
 
 

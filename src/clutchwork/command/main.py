@@ -9,6 +9,7 @@ from collections.abc import Sequence
 from typing import Any
 
 from clutchwork.base.errors import ModelError, ModelFileError
+from clutchwork.base.extras import program
 from clutchwork.base.shell import (
     DONE,
     EXIT_CODES,
@@ -120,14 +121,5 @@ class _Version(argparse.Action):
 
     def __call__(self, parser: argparse.ArgumentParser, *_: Any) -> None:
         """Print it and end."""
-        sys.stdout.write(f"{_version()}\n")
+        sys.stdout.write(f"{program()}\n")
         parser.exit()
-
-
-def _version() -> str:
-    from importlib.metadata import PackageNotFoundError, version
-
-    try:
-        return f"clutchwork {version('clutchwork')}"
-    except PackageNotFoundError:
-        return "clutchwork (not installed)"

@@ -256,9 +256,9 @@ class Component(Element):
         return ()
 
     def directions(self) -> Mapping[str, Mapping[str, float | Fraction]]:
-        """Of an element with `ways`: the rate of each over the speeds at its ports, way -> port -> coefficient.
+        """Rate of each way of an element with `ways`, as way -> port -> coefficient of the speed at that port.
 
-        A float counts by its decimal digits.
+        A float is taken as the decimal fraction that prints it.
         """
         return {}
 

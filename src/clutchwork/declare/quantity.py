@@ -70,6 +70,14 @@ def in_si(
     return value if whole else times(value, Scale(factor, zero))
 
 
+def seconds(text: str) -> float:
+    """A time [s] as the command line gives it: "0.4" or "400 ms"; QuantityError where it is none."""
+    try:
+        return float(text)
+    except ValueError:
+        return float(in_si(text, "s"))
+
+
 def _from_text(value: str, unit: str, others: tuple[str, ...], difference: bool) -> float:
     parts = units.split(value)
     if parts is None:

@@ -9,6 +9,7 @@ from __future__ import annotations
 
 from dataclasses import MISSING, Field, field, fields
 from functools import cache
+from math import inf, nextafter
 from typing import TYPE_CHECKING, Any, TypeAlias, TypeVar, dataclass_transform
 
 from clutchwork.base.classes import PLAIN, dataclass
@@ -17,7 +18,7 @@ from clutchwork.declare.registry import REGISTRY as REGISTRY
 from clutchwork.declare.registry import Role as Role
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
+    from collections.abc import Callable, Iterable
 
 
 @dataclass(frozen=True)
@@ -96,6 +97,21 @@ class Spec:
             and (self.below is None or value < self.below)
             and (self.at_most is None or value <= self.at_most)
         )
+
+    @property
+    def ends(self) -> tuple[float, float]:
+        """The least and the largest number that keep the bound, infinite where there is none."""
+        lower = [-inf if self.above is None else nextafter(self.above, inf)]
+        upper = [inf if self.below is None else nextafter(self.below, -inf)]
+        lower += [] if self.at_least is None else [self.at_least]
+        upper += [] if self.at_most is None else [self.at_most]
+        return max(lower), min(upper)
+
+
+def common_ends(found: Iterable[Spec]) -> tuple[float, float]:
+    """The least and the largest number that all of them allow."""
+    lower, upper = zip(*(spec.ends for spec in found), strict=True)
+    return max(lower), min(upper)
 
 
 def _field(spec: Spec, default: Any, kw_only: bool = True) -> Any:

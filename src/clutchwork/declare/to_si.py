@@ -85,7 +85,7 @@ def numbers_in_si(value: Any, wanted: TargetUnit) -> Any:
             found = from_pint(value, wanted.unit, wanted.others) if pints.is_list(value) else value
         except QuantityError:
             return value
-        return _in_tuples(found)
+        return in_tuples(found)
     if not _is_list(value) or (wanted.scale is PLAIN and NUMBERS.issuperset(map(type, value))):
         return value
     made = [numbers_in_si(item, wanted) if _is_list(item) or is_array(item) else wanted.number(item) for item in value]
@@ -108,8 +108,9 @@ def _all_plain(points: Any) -> bool:
         return False
 
 
-def _in_tuples(value: Any) -> Any:
-    return tuple(map(_in_tuples, value)) if isinstance(value, list) else value
+def in_tuples(value: Any) -> Any:
+    """Lists as tuples, at every level."""
+    return tuple(map(in_tuples, value)) if isinstance(value, list) else value
 
 
 # units of what turns, and of the same on a line

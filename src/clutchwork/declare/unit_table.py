@@ -46,7 +46,7 @@ def unit_table() -> tuple[UnitRow, ...]:
 
 
 def fitting(unit: str) -> list[str]:
-    """Units that values in one of SI may be given in."""
+    """Units that convert to a given SI unit."""
     exact = [row.name for row in unit_table() if row.si == unit]
     return exact or [row.name for row in unit_table() if powers_of(row.si) == powers_of(unit)]
 

@@ -87,7 +87,7 @@ def _parsed(text: str) -> Unit:
 
 @cache
 def powers_of(text: str) -> tuple[int, ...]:
-    """Powers of a unit that is known."""
+    """Powers of the base units in a unit that is known."""
     return parse(text).powers
 
 

@@ -31,7 +31,6 @@ class Backlash(Stop):
     initial_twist: float = option("rad", "twist at the start, 0 in the middle of the gap", default=0.0, units=("m",))
 
     def problems(self) -> Found:
-        """What the bounds of single values cannot say, as (quantity, what is wrong, remedy)."""
         if abs(self.initial_twist) <= self.gap / 2:
             return []
         bound = f"is {self.initial_twist:g} rad, outside the gap of {self.gap:g} rad"

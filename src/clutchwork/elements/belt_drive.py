@@ -76,7 +76,6 @@ class BeltDrive(Sticking):
     )
 
     def problems(self) -> Found:
-        """What the bounds of single values cannot say, as (quantity, what is wrong, remedy)."""
         least = self.radius_base + self.radius_follower
         if self.tensioned is not None and self.tensioner is None:
             return [("tensioned", "needs a tensioner", "give `tensioner` in place of `preload`, or leave it out")]

@@ -27,7 +27,6 @@ class BevelGear(Component):
     teeth_output: int | None = param("1", "teeth of the output wheel", default=None, above=0.0, whole=True)
 
     def problems(self) -> Found:
-        """What the bounds of single values cannot say, as (quantity, what is wrong, remedy)."""
         if self.ratio == 0.0:
             return [("ratio", "is zero", "give a number other than zero; a fixed shaft is the housing")]
         return ratio_problems(self, "ratio", ("teeth_input", "teeth_output"))

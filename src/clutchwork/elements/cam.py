@@ -42,7 +42,6 @@ class Cam(Heating):
     initial_gap: float = option("m", "distance of the follower from the cam at the start", default=0.0, at_least=0.0)
 
     def problems(self) -> Found:
-        """What the bounds of single values cannot say, as (quantity, what is wrong, remedy)."""
         return lift_problems(self.lift)
 
     def parts(self) -> Iterator[Part]:

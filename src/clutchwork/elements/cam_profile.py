@@ -57,7 +57,6 @@ class CamProfile(Component):
     phase: float = option("rad", "angle of the cam where the angle of the shaft is 0", default=0.0)
 
     def problems(self) -> Found:
-        """What the bounds of single values cannot say, as (quantity, what is wrong, remedy)."""
         found = lift_problems(self.lift)
         if found:
             return found

@@ -40,7 +40,6 @@ class Chain(Lossy):
     phase_output: float = option("1", "the same at the output", default=0.0, at_least=-1.0, at_most=1.0)
 
     def problems(self) -> Found:
-        """What the bounds of single values cannot say, as (quantity, what is wrong, remedy)."""
         found = []
         if self.polygon and self.pitch is None:
             found.append(("pitch", "is missing", "give the length of a link, or leave out `polygon`"))

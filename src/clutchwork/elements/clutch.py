@@ -2,12 +2,7 @@
 
 from __future__ import annotations
 
-from clutchwork.declare import (
-    Node,
-    Role,
-    component,
-    port,
-)
+from clutchwork.declare import Node, Role, component, port
 from clutchwork.elements.bases.contacts import Pressed
 
 

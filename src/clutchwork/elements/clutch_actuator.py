@@ -62,7 +62,6 @@ class ClutchActuator(Component):
         return 2.0 * (sqrt(start) - sqrt(kiss)) * self.piston_area**2 / (self.spring_rate * conductance)
 
     def problems(self) -> Found:
-        """What the bounds of single values cannot say, as (quantity, what is wrong, remedy)."""
         if self.initial_pressure == 0.0 or self.initial_stroke == 0.0:
             return []
         fault = f"is {self.initial_pressure:g} Pa, but the piston is off its stop"

@@ -33,7 +33,6 @@ class CompoundPlanetary(Component):
     teeth_ring: int | None = param("1", "teeth of the ring, counted positive", default=None, above=0.0, whole=True)
 
     def problems(self) -> Found:
-        """What the bounds of single values cannot say, as (quantity, what is wrong, remedy)."""
         found = ratio_problems(self, "ratio", TEETH)
         planet, ring = self.teeth_planet_ring, self.teeth_ring
         if not found and planet is not None and ring is not None and ring <= planet:

@@ -5,17 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable
 from math import pi, sin
 
-from clutchwork.declare import (
-    Component,
-    Node,
-    Role,
-    SignalLike,
-    ThermalNode,
-    component,
-    param,
-    port,
-    signal,
-)
+from clutchwork.declare import Component, Node, Role, SignalLike, ThermalNode, component, param, port, signal
 from clutchwork.elements.bases.contacts import Contact
 from clutchwork.elements.bases.geometry import Found, effective_radius, ring_problems
 from clutchwork.elements.plate_contact import PlateContact
@@ -44,7 +34,6 @@ class ConeClutch(Contact):
     force: SignalLike = signal("N", "axial force; below zero counts as zero", presses=True)
 
     def problems(self) -> Found:
-        """What the bounds of single values cannot say, as (quantity, what is wrong, remedy)."""
         return ring_problems(self.radius, self.outer_diameter, self.inner_diameter)
 
     @property

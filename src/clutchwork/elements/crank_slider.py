@@ -38,7 +38,6 @@ class CrankSlider(Component):
     phase: float = option("rad", "angle of the crank where the angle of the shaft is 0", default=0.0)
 
     def problems(self) -> Found:
-        """What the bounds of single values cannot say, as (quantity, what is wrong, remedy)."""
         if self.rod > self.radius:
             return []
         fault = f"is {self.rod:g} m, not above the radius {self.radius:g} m"

@@ -18,5 +18,4 @@ class Damper(Heating):
     damping: float = param("N m s/rad", "viscous damping", at_least=0.0, units=("N s/m",))
 
     def passive(self) -> Passive:
-        """Stiffness and damping, which are all that it is."""
         return Passive(0.0, self.damping)

@@ -54,7 +54,6 @@ class DiaphragmSpring(Component):
     )
 
     def problems(self) -> Found:
-        """What the bounds of single values cannot say, as (quantity, what is wrong, remedy)."""
         return few_points("force", len(self.force), self.interpolation)
 
     def initial_states(self) -> tuple[float, ...]:

@@ -36,7 +36,6 @@ class Differential(Sticking):
     locked: bool = option("1", "both sides together at the start", default=False, flag=True, last=1)
 
     def problems(self) -> Found:
-        """What the bounds of single values cannot say, as (quantity, what is wrong, remedy)."""
         found = []
         for one, other in (("share", "bias"), ("coast_share", "coast_bias")):
             if getattr(self, one) is not None and getattr(self, other) is not None:

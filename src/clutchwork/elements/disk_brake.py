@@ -5,18 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable
 from math import pi
 
-from clutchwork.declare import (
-    HOUSING,
-    Component,
-    Node,
-    Role,
-    SignalLike,
-    ThermalNode,
-    component,
-    param,
-    port,
-    signal,
-)
+from clutchwork.declare import HOUSING, Component, Node, Role, SignalLike, ThermalNode, component, param, port, signal
 from clutchwork.elements.bases.contacts import Contact
 from clutchwork.elements.plate_contact import PlateContact
 

@@ -102,7 +102,6 @@ class DiskClutch(Contact):
     touch_shift: float = param("Pa/m", "rise of the threshold with wear", default=0.0, at_least=0.0, units=("N/m",))
 
     def problems(self) -> Found:
-        """What the bounds of single values cannot say, as (quantity, what is wrong, remedy)."""
         found = ring_problems(self.radius, self.outer_diameter, self.inner_diameter)
         if self.area is None and (self.pressure is not None or self.wear_rate is not None):
             beside = "a pressure" if self.pressure is not None else "wear_rate"

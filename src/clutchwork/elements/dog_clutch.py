@@ -48,7 +48,6 @@ class DogClutch(Heating):
     engaged: bool = option("1", "in mesh at the start, at any slip", default=False, flag=True)
 
     def problems(self) -> Found:
-        """What the bounds of single values cannot say, as (quantity, what is wrong, remedy)."""
         return gap_problems(self.gap, self.teeth)
 
     def initial_states(self) -> tuple[float, ...]:

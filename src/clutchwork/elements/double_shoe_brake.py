@@ -38,7 +38,6 @@ class DoubleShoeBrake(Contact):
     force: SignalLike = signal("N", "actuating force on each shoe; below zero counts as zero", presses=True)
 
     def problems(self) -> Found:
-        """What the bounds of single values cannot say, as (quantity, what is wrong, remedy)."""
         if self.end > self.start:
             return []
         return [("end", f"is {self.end:g} rad, not above the start {self.start:g} rad", "give it behind the start")]

@@ -36,7 +36,6 @@ class EddyCurrentBrake(Heating):
         return False
 
     def problems(self) -> Found:
-        """What the bounds of single values cannot say, as (quantity, what is wrong, remedy)."""
         if self.temperature_coefficient == 0.0:
             return []
         # the coldest that is known in advance; below that the law has no resistance left, and would drive

@@ -104,7 +104,6 @@ class ElectricMotor(Heating):
     )
 
     def problems(self) -> Found:
-        """What the bounds of single values cannot say, as (quantity, what is wrong, remedy)."""
         found: Found = []
         for name in ("max_torque", "generator_torque"):
             points = points_of(getattr(self, name) or 0.0)

@@ -43,7 +43,6 @@ class EndStop(Stop):
     )
 
     def problems(self) -> Found:
-        """What the bounds of single values cannot say, as (quantity, what is wrong, remedy)."""
         if self.lower is None and self.upper is None:
             return [("upper", "is missing, and so is lower", "give one end or both")]
         lower = float("-inf") if self.lower is None else self.lower
@@ -57,14 +56,12 @@ class EndStop(Stop):
         return [("initial_position", f"is {start:g} at the start, {end}", "start between the ends")]
 
     def is_open(self) -> bool:
-        """Whether its position at the start may follow from what moves a mass."""
         ends: tuple[Any, ...] = (self.follower, self.base or HOUSING)
         if self.initial_position is not None or not all(isinstance(node, Node) for node in ends):
             return False
         return any(node.domain is Domain.TRANSLATION and node.angle is None for node in ends)
 
     def rests(self) -> bool:
-        """Whether it is at an end at the start."""
         return self.initial_states()[0] in (self.lower, self.upper)
 
     def initial_states(self) -> tuple[float, ...]:

@@ -100,7 +100,6 @@ class Engine(Component):
     )
 
     def problems(self) -> Found:
-        """What the bounds of single values cannot say, as (quantity, what is wrong, remedy)."""
         found = self._torque_problems()
         if self.idle_speed is not None and not self.idle_gain and not self.idle_integral:
             found.append(("idle_speed", "has no control", "give idle_gain [s/rad], idle_integral [1/rad] or both"))

@@ -92,7 +92,6 @@ class EngineTorque(Component):
     )
 
     def problems(self) -> Found:
-        """What the bounds of single values cannot say, as (quantity, what is wrong, remedy)."""
         rows, columns = len(self.speeds), len(self.throttles)
         found: Found = []
         for name, grid in (("speeds", self.speeds), ("throttles", self.throttles)):

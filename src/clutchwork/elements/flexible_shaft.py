@@ -72,7 +72,6 @@ class FlexibleShaft(Heating):
     damping_time: float = param("s", "damping over stiffness", default=0.0, at_least=0.0)
 
     def problems(self) -> Found:
-        """What the bounds of single values cannot say, as (quantity, what is wrong, remedy)."""
         if self.modes is not None and self.segments is not None:
             return [("segments", f"is {self.segments:g} beside {self.modes:g} modes", "give one of the two")]
         whole, bar = (self.stiffness, self.inertia), (self.length, self.outer_diameter)

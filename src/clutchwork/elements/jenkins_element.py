@@ -68,7 +68,6 @@ class JenkinsElement(Heating):
     initial_twist: float = option("rad", "twist at the start, where the limit is over it", default=0.0, units=("m",))
 
     def problems(self) -> Found:
-        """What the bounds of single values cannot say, as (quantity, what is wrong, remedy)."""
         points = [(float(x), float(y)) for x, y in self._table]
         if len(points) > 1 and (points[0][1] < points[1][1] or points[-1][1] < points[-2][1]):
             return [("limit", "falls below zero beyond its ends", "repeat the values at its ends, or let them rise")]

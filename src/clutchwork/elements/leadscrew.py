@@ -32,7 +32,6 @@ class Leadscrew(Sticking):
     )
 
     def problems(self) -> Found:
-        """What the bounds of single values cannot say, as (quantity, what is wrong, remedy)."""
         return screw_problems(self.lead_angle, self.friction_coefficient, self.normal_angle)
 
     @property

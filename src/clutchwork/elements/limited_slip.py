@@ -39,5 +39,4 @@ class LimitedSlip(Meshing):
         return {"slip": {"left": 1, "right": -1}}
 
     def rows(self) -> list[dict[str, Fraction]]:
-        """Coefficients of the speeds whose sum is zero; the torque of the first row is the load."""
         return [{"carrier": Fraction(2), "left": Fraction(-1), "right": Fraction(-1)}]

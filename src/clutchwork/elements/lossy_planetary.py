@@ -25,7 +25,6 @@ class LossyPlanetary(PlanetarySet, Lossy):
     """
 
     def problems(self) -> Found:
-        """What the bounds of single values cannot say, as (quantity, what is wrong, remedy)."""
         return super().problems() or self.loss_problems()
 
     def parts(self) -> Iterable[Component]:

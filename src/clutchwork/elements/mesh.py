@@ -39,7 +39,6 @@ class Mesh(Meshing):
     )
 
     def problems(self) -> Found:
-        """What the bounds of single values cannot say, as (quantity, what is wrong, remedy)."""
         if self.ratio == 0:
             return [("ratio", "is zero", "give a number other than zero; a fixed shaft is the housing")]
         return table_problems("loss_table", self.loss_table)
@@ -49,6 +48,5 @@ class Mesh(Meshing):
         return {"slip": {"input": 1, "support": -1}}
 
     def rows(self) -> list[dict[str, Fraction]]:
-        """Coefficients of the speeds whose sum is zero; the torque of the first row is the load."""
         ratio = exact(self.ratio)
         return [{"input": Fraction(1), "output": -ratio, "support": ratio - 1}]

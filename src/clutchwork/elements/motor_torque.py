@@ -85,7 +85,6 @@ class MotorTorque(Heating):
     initial_request: float = option("N m", "command that has come through at the start", default=0.0, units=("N",))
 
     def problems(self) -> Found:
-        """What the bounds of single values cannot say, as (quantity, what is wrong, remedy)."""
         rows, columns = len(self.speeds), len(self.torques)
         found: Found = []
         for name, grid in (("speeds", self.speeds), ("torques", self.torques)):

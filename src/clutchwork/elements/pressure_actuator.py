@@ -30,7 +30,6 @@ class PressureActuator(Component):
     initial_pressure: float = option("Pa", "pressure at the start, of a filled one", default=0.0, at_least=0.0)
 
     def problems(self) -> Found:
-        """What the bounds of single values cannot say, as (quantity, what is wrong, remedy)."""
         if self.filled or self.initial_pressure == 0.0:
             return []
         fault = f"is {self.initial_pressure:g} Pa, but the piston is not filled"

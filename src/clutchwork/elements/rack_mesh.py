@@ -36,7 +36,6 @@ class RackMesh(Meshing):
     )
 
     def problems(self) -> Found:
-        """What the bounds of single values cannot say, as (quantity, what is wrong, remedy)."""
         return table_problems("loss_table", self.loss_table)
 
     def directions(self) -> Mapping[str, Mapping[str, float]]:
@@ -44,5 +43,4 @@ class RackMesh(Meshing):
         return {"slip": {"shaft": 1, "support": -1}}
 
     def rows(self) -> list[dict[str, Fraction]]:
-        """Coefficients of the speeds whose sum is zero; the torque of the first row is the load."""
         return [{"shaft": Fraction(1), "mass": -1 / exact(self.radius), "support": Fraction(-1)}]

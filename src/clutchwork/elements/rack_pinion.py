@@ -32,7 +32,6 @@ class RackPinion(Lossy):
     module: float | None = param("m", "module, diameter of the pitch circle per tooth", default=None, above=0.0)
 
     def problems(self) -> Found:
-        """What the bounds of single values cannot say, as (quantity, what is wrong, remedy)."""
         found = ratio_problems(self, "radius", ("teeth", "module"))
         return found or self.loss_problems() or self.heat_problems()
 

@@ -33,7 +33,6 @@ class RatioActuator(Component):
     initial_ratio: float | None = option("1", "ratio at the start, that of the command by default", default=None)
 
     def problems(self) -> Found:
-        """What the bounds of single values cannot say, as (quantity, what is wrong, remedy)."""
         if self.initial_ratio is None and isinstance(self.command, Node | Rate | HeatFlow | ThermalNode):
             return [("initial_ratio", "is missing, and the command says none at the start", "give the ratio there")]
         return []

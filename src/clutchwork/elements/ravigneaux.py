@@ -34,7 +34,6 @@ class Ravigneaux(Component):
     teeth_ring: int | None = param("1", "teeth of the ring, counted positive", default=None, above=0.0, whole=True)
 
     def problems(self) -> Found:
-        """What the bounds of single values cannot say, as (quantity, what is wrong, remedy)."""
         found = ratio_problems(self, "ratio_large", ("teeth_large_sun", "teeth_ring"))
         found += ratio_problems(self, "ratio_small", ("teeth_small_sun", "teeth_ring"))
         if found:

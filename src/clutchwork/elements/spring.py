@@ -28,5 +28,4 @@ class Spring(Component):
         return (self.stiffness * self.initial_twist,)
 
     def passive(self) -> Passive:
-        """Stiffness and damping, which are all that it is."""
         return Passive(self.stiffness, 0.0)

@@ -30,5 +30,4 @@ class SpringDamper(Heating):
         return (self.stiffness * self.initial_twist,)
 
     def passive(self) -> Passive:
-        """Stiffness and damping, which are all that it is."""
         return Passive(self.stiffness, self.damping)

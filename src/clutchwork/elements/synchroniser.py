@@ -41,7 +41,6 @@ class Synchroniser(Heating):
     command: SignalLike = signal("1", "wanted position of the sleeve: 1 forward, 0 neutral, -1 backward")
 
     def problems(self) -> Found:
-        """What the bounds of single values cannot say, as (quantity, what is wrong, remedy)."""
         return gap_problems(self.gap, self.teeth)
 
     def parts(self) -> Iterable[Component | ThermalNode]:

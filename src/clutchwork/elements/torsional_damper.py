@@ -59,7 +59,6 @@ class TorsionalDamper(Heating):
     initial_twist: float = option("rad", "twist at the start", default=0.0, units=("m",))
 
     def problems(self) -> Found:
-        """What the bounds of single values cannot say, as (quantity, what is wrong, remedy)."""
         given = {name: len(getattr(self, name)) for name in LISTS if getattr(self, name) is not None}
         if given and "friction_stiffness" not in given:
             remedy = "give one stiffness for each element; one without give is `dry_friction`"

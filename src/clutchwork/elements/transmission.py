@@ -120,7 +120,6 @@ class Transmission(TabledComposite, Heating):
         return tuple(self._parts())
 
     def problems(self) -> Found:
-        """What the bounds of single values cannot say, as (quantity, what is wrong, remedy)."""
         box = self._read.box
         if box is None:
             return [("gearbox", message, remedy) for message, remedy in self._read.problems]

@@ -29,7 +29,6 @@ class VariableGear(Component):
     ratio: SignalLike = signal("1", "speed of the input over speed of the output", example=2.0)
 
     def problems(self) -> Found:
-        """What the bounds of single values cannot say, as (quantity, what is wrong, remedy)."""
         return ratio_problems(self.ratio)
 
     def directions(self) -> Mapping[str, Rates]:

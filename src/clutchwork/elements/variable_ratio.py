@@ -47,7 +47,6 @@ class VariableRatio(Sticking):
     locked: bool = option("1", "grips at the start, by an impulse if necessary", default=True, flag=True, last=1)
 
     def problems(self) -> Found:
-        """What the bounds of single values cannot say, as (quantity, what is wrong, remedy)."""
         return ratio_problems(self.ratio)
 
     def parts(self) -> Iterator[Part]:

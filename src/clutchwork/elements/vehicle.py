@@ -35,7 +35,6 @@ class Vehicle(Component):
     locked: bool = option("1", "held at rest at the start", default=False, flag=True)
 
     def problems(self) -> Found:
-        """What the bounds of single values cannot say, as (quantity, what is wrong, remedy)."""
         if self.mass.inertia > 0.0:
             return []
         return [("mass", f"{self.mass.name!r} has no mass, so no weight", "give the mass of the vehicle to it")]

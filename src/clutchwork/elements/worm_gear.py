@@ -29,7 +29,6 @@ class WormGear(Sticking):
     normal_angle: float = param("rad", "pressure angle in the normal section", default=0.349, at_least=0.0, below=1.5)
 
     def problems(self) -> Found:
-        """What the bounds of single values cannot say, as (quantity, what is wrong, remedy)."""
         if self.ratio == 0:
             return [("ratio", "is zero", "give a number other than zero")]
         return screw_problems(self.lead_angle, self.friction_coefficient, self.normal_angle)

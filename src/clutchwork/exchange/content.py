@@ -11,6 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from clutchwork.base.classes import dataclass
+from clutchwork.base.extras import program
 from clutchwork.declare.options import OPTIONS
 from clutchwork.model.settings import plain_settings
 from clutchwork.results.events import UNITS, Event, Events
@@ -96,17 +97,6 @@ class Content:
         text = [f"model: {about['model']}", f"program: {about['program']}", f"status: {about['status']}"]
         text += [about["message"]] if about["message"] else []
         return "\n".join([*text, f"t_end: {about['t_end']!r} s", f"options: {json.dumps(about['options'])}"])
-
-
-def program() -> str:
-    """Name and version of what wrote a file."""
-    # brings some fifty modules
-    from importlib.metadata import PackageNotFoundError, version
-
-    try:
-        return f"clutchwork {version('clutchwork')}"
-    except PackageNotFoundError:
-        return "clutchwork (not installed)"
 
 
 def settings_of(run: Recorded) -> dict[str, Any]:

@@ -46,7 +46,7 @@ class OnRay:
         return self._workers
 
     def run(self, task: Task, job: Any, pieces: Iterable[Any]) -> Generator[Any, None, None]:
-        """What the task gives for each piece, as they come; Ray gives those of a dead worker to another."""
+        """Yield the result of each piece as it completes; Ray moves the pieces of a worker that died to another one."""
         ray, rest = self._ray, iter(pieces)
         call = ray.remote(num_cpus=1, max_retries=TRIES - 1)(called)
         shared, going = ray.put(job), list[Any]()

@@ -16,7 +16,6 @@ from clutchwork.files.references import References
 from clutchwork.files.values import ValueReader
 from clutchwork.model.changes import PLACES, Target, changed_model, targets_of
 from clutchwork.model.fields import BROKEN
-from clutchwork.model.findings import findings
 from clutchwork.model.model import Model
 from clutchwork.model.numbers import At
 from clutchwork.model.problems import NODE_FIELDS
@@ -40,8 +39,12 @@ def given_values(model: Model, texts: Sequence[str], folder: str = "") -> dict[s
     values = {name: value for name, value in values.items() if value is not BROKEN}
     problems += [*unknown, *reader.problems]
     if problems:
-        # what is out of bounds is named with the rest
-        raise ModelError([*problems, *findings(changed_model(model, values)).problems], "--set")
+        try:
+            changed_model(model, values)
+        except ModelError as error:
+            # what is out of bounds is named with the rest
+            problems += error.problems
+        raise ModelError(problems, "--set")
     return values
 
 

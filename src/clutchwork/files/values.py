@@ -13,7 +13,7 @@ from clutchwork.base.quote import listed, quote
 from clutchwork.declare.node import HOUSING, Domain, Node, ThermalNode
 from clutchwork.declare.quantity import PLAIN, QuantityError, in_si, scale_to_si
 from clutchwork.declare.schema import REGISTRY, Role, Spec, inputs, specs
-from clutchwork.declare.to_si import settled
+from clutchwork.declare.to_si import in_tuples, settled
 from clutchwork.files.lists import curve_in_si, list_in_si
 from clutchwork.files.references import References, is_named, referred
 from clutchwork.model.components import type_problem
@@ -82,7 +82,7 @@ class ValueReader:
         # lists could be changed by their owner, and the reader has none
         for key, value in values.items():
             if type(value) is list:
-                values[key] = _in_tuples(value)
+                values[key] = in_tuples(value)
         return values
 
     def _read(
@@ -271,10 +271,6 @@ class ValueReader:
 def _is_of(node: Any, spec: Spec) -> bool:
     """Whether a port may be on a node."""
     return spec.what != "port" or not spec.domain or node.fixed or node.domain.value == spec.domain
-
-
-def _in_tuples(value: Any) -> Any:
-    return tuple(map(_in_tuples, value)) if isinstance(value, list) else value
 
 
 def _place(at: At, key: str, spec: Spec) -> At:

@@ -43,7 +43,7 @@ class Numbers:
         return np.array([*range(self.shared), *range(first, first + own)], dtype=np.intp)
 
     def values(self, u: Array) -> Array:
-        """Codes -> numbers."""
+        """Decode the numbers that the search varies."""
         return np.array([item.decoded(float(code)) for item, code in zip(self.items, u, strict=True)])
 
     def codes(self) -> Array:

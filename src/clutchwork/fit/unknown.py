@@ -86,15 +86,12 @@ def _made(name: str, spec: Spec, unit: str, start: float, field: str, point: int
 
 def _limits(spec: Spec, start: float, point: int | None, given: Pair) -> tuple[float, float]:
     """Bounds of the declaration, narrowed by given ones."""
-    lowest = [-inf if spec.at_least is None else spec.at_least]
-    lowest.append(-inf if spec.above is None else nextafter(spec.above, inf))
+    lowest, highest = spec.ends
     # an ordinate is a coefficient or a share: it keeps its sign
     if point is not None:
-        lowest.append(nextafter(0.0, inf) if start > 0.0 else 0.0)
-    highest = [inf if spec.at_most is None else spec.at_most]
-    highest.append(inf if spec.below is None else nextafter(spec.below, -inf))
-    lower = max(*lowest, -inf if given[0] is None else float(given[0]))
-    return lower, min(*highest, inf if given[1] is None else float(given[1]))
+        lowest = max(lowest, nextafter(0.0, inf) if start > 0.0 else 0.0)
+    lower, upper = given
+    return max(lowest, -inf if lower is None else float(lower)), min(highest, inf if upper is None else float(upper))
 
 
 def below_static(law: Law, item: Unknown, free: list[str]) -> Unknown:

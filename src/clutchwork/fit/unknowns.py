@@ -59,12 +59,12 @@ class Unknowns:
 
     @property
     def lower(self) -> Array:
-        """Lowest codes."""
+        """Lower bounds of the search, as codes."""
         return self._limits([0.0 if item.over else item.coded(item.lower) for item in self.items], -log(REACH))
 
     @property
     def upper(self) -> Array:
-        """Highest codes."""
+        """Upper bounds of the search, as codes."""
         return self._limits([inf if item.over else item.coded(item.upper) for item in self.items], log(REACH))
 
     def _limits(self, codes: list[float], of_ratios: float) -> Array:

@@ -113,12 +113,8 @@ def _shown(known: Channels, name: str) -> str:
 
 
 def _input(known: Channels, name: str, found: Settable, start: float) -> FmuVariable:
-    lower = found.spec.at_least if found.spec.at_least is not None else found.spec.above
-    upper = found.spec.at_most if found.spec.at_most is not None else found.spec.below
-    bounds = (-float("inf") if lower is None else lower, float("inf") if upper is None else upper)
-    return FmuVariable(
-        _shown(known, name), VariableKind.INPUT, found.unit, start, bounds, found.spec.doc, inputs=found.numbers
-    )
+    shown, spec = _shown(known, name), found.spec
+    return FmuVariable(shown, VariableKind.INPUT, found.unit, start, spec.ends, spec.doc, inputs=found.numbers)
 
 
 def _slope(number: int, of: FmuVariable) -> FmuVariable:

@@ -25,7 +25,7 @@ PIECE = 12
 def unpressed(
     chart: Chart, words: Array, slopes: Slopes, names: Sequence[str], begin: float, end: float
 ) -> Iterator[tuple[float, str, Mask]]:
-    """Pieces of loads that are zero: when they begin [s], what is said of them, and numbers that would make them more.
+    """Intervals of zero clamp load: their start [s], a message, and the numbers that would raise the load there.
 
     Parameters: begin and end, of the run [s].
     """

@@ -13,11 +13,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from clutchwork.assembly.changes import UNKNOWN_SOURCE, owners_of
-from clutchwork.assembly.provenance import bounds_of
 from clutchwork.base.classes import dataclass
 from clutchwork.base.errors import ModelError, UseError, advised
 from clutchwork.base.quote import quote
 from clutchwork.declare.node import Law, Signal
+from clutchwork.declare.schema import common_ends
 from clutchwork.model.changes import Owners, Target, changeable, field_of, named, target, targets_of, unit_of
 
 if TYPE_CHECKING:
@@ -114,7 +114,7 @@ def _number(aim: Target, name: str) -> Tunable:
     if spec.what == "option" and aim.path[-1] == "tolerance" and not start:
         # contacts lock at the exact zero of their slip, which no value beside it does
         raise Unfit(f"{name} is 0, the exact zero of the slip, beside which there is another rule; give it a value")
-    return Tunable(name, name, (), unit_of(aim), start, abs(start) or 1.0, *bounds_of(spec))
+    return Tunable(name, name, (), unit_of(aim), start, abs(start) or 1.0, *spec.ends)
 
 
 def _inside(value: Any, name: str) -> str:
@@ -154,7 +154,7 @@ def _entries(table: Target, name: str, which: str) -> Iterator[Tunable]:
     else:
         found, unit = list(_knots(value)), spec.unit_x
     gaps = np.diff([one for _, _, one in found]) if which == abscissae else np.zeros(0)
-    bounds = bounds_of(*declared) if which == "values" else (-inf, inf)
+    bounds = common_ends(declared) if which == "values" else (-inf, inf)
     reach, scale = float(np.min(gaps, initial=inf)), max(abs(one) for _, _, one in found) or 1.0
     for words, places, one in found:
         yield Tunable(f"{name}.{which}{words}", field, places, unit, one, scale, *bounds, reach)

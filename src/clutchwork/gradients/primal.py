@@ -78,7 +78,7 @@ class Primal:
         return found
 
     def bends_at(self, columns: Places, times: Array) -> NDArray[np.bool_]:
-        """Whether numbers of a row bend or jump at some instants with a knot that moves."""
+        """Whether a moving knot gives these columns a kink or a jump at each of the instants."""
         if not len(self.knots.times) and not len(self.knots.meets):
             return np.zeros(len(times), dtype=bool)
         knots = np.r_[self.knots.times, self.knots.meets]
@@ -107,7 +107,7 @@ class Primal:
 
     @cached_property
     def meets(self) -> list[tuple[float, int]]:
-        """Instants at which knots meet others that move otherwise [s], and the steps that begin there."""
+        """Instants [s] at which a knot meets one that moves differently, and the steps that begin there."""
         ends = np.r_[self.steps.begin, self.steps.end[-1:]]
         return [(float(time), int(np.argmin(np.abs(ends - time)))) for time in self.knots.meets] if len(ends) else []
 

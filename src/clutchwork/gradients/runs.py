@@ -113,7 +113,7 @@ class Runs:
     # ------------------------------------------------------------------------------------------------- with derivatives
 
     def point(self, x: Array) -> RunPoint:
-        """What a run with derivatives needs; NoGradient where a run stops early."""
+        """Prepare a run with derivatives at a point; NoGradient where the plain run stops early."""
         chart, words = self.words.at(x)
         slopes = chart.slopes(x)
         moving = knots(chart, words, slopes, self.wanted.begin, self.wanted.t_end)

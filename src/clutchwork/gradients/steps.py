@@ -137,7 +137,7 @@ class Steps:
         return found / self.length[:, None, None]
 
     def at(self, step: int, share: float) -> Array:
-        """Weights of the rows of a step for the value at a place in it."""
+        """Weights that interpolate the rows of a step at a share of its length."""
         found: Array = share ** np.arange(PARTS + 1) @ self.basis[step]
         return found
 

@@ -21,7 +21,6 @@ class CoefficientTable(Law):
     extrapolation: str = beyond_the_ends()
 
     def problems(self) -> Found:
-        """What the bounds of single values cannot say, as (quantity, what is wrong, remedy)."""
         for number, (x, y) in enumerate(self.kinetic, 1):
             if x < 0.0 or y < 0.0:
                 fault = f"point {number} is ({x:g}, {y:g})"
@@ -38,7 +37,6 @@ class CoefficientTable(Law):
         return continued("kinetic", [self.kinetic], "rad/s", self.extrapolation, "linear")
 
     def sliding(self) -> float:
-        """Kinetic coefficient at vanishing slip."""
         (x, y), *rest = self.kinetic
         if not rest or self.extrapolation != "linear":
             return y

@@ -16,5 +16,4 @@ class Coulomb(Law):
     kinetic: float = param("1", "coefficient while it slips, at most the static one", at_least=0.0, example=0.1)
 
     def sliding(self) -> float:
-        """Kinetic coefficient at vanishing slip."""
         return self.kinetic

@@ -35,7 +35,6 @@ class ElastoPlastic(StribeckCurve):
     )
 
     def problems(self) -> Found:
-        """What the bounds of single values cannot say, as (quantity, what is wrong, remedy)."""
         found = super().problems() + kinetic_problems(self.kinetic)
         return found or self._deflection_problems()
 
@@ -51,5 +50,4 @@ class ElastoPlastic(StribeckCurve):
         return []
 
     def advice(self) -> Found:
-        """Properties that are rarely wanted, as (quantity, what is so, remedy)."""
         return passivity_advice(self, self.damping)

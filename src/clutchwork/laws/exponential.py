@@ -22,5 +22,4 @@ class Exponential(Law):
     )
 
     def sliding(self) -> float:
-        """Kinetic coefficient at vanishing slip."""
         return self.slow

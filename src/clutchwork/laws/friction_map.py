@@ -37,7 +37,6 @@ class FrictionMap(Tabulated):
     temperature: SignalLike | None = signal("K", "temperature of the lining", default=None)
 
     def problems(self) -> Found:
-        """What the bounds of single values cannot say, as (quantity, what is wrong, remedy)."""
         found = few_points("temperatures", len(self.temperatures), self.interpolation)
         found += few_points("speeds", len(self.speeds), self.interpolation)
         found += slip_axis("speeds", self.speeds[0], "rad/s")

@@ -25,7 +25,6 @@ class FrictionTable(Tabulated):
     )
 
     def problems(self) -> Found:
-        """What the bounds of single values cannot say, as (quantity, what is wrong, remedy)."""
         slips, values = [x for x, _ in self.kinetic], [y for _, y in self.kinetic]
         found = few_points("kinetic", len(slips), self.interpolation) + slip_axis("kinetic", slips[0], "rad/s")
         found += not_positive("kinetic", values, "rad/s", slips)
@@ -36,5 +35,4 @@ class FrictionTable(Tabulated):
         return continued("kinetic", [self.kinetic], "rad/s", self.extrapolation, self.interpolation)
 
     def sliding(self) -> float:
-        """Kinetic coefficient at vanishing slip."""
         return float(self.kinetic[0][1])

@@ -49,7 +49,6 @@ class GMS(StribeckCurve):
         return self.states[: len(self.elements)]
 
     def problems(self) -> Found:
-        """What the bounds of single values cannot say, as (quantity, what is wrong, remedy)."""
         found = super().problems() + kinetic_problems(self.kinetic)
         found = found or element_problems(self.elements, FEWEST, LARGEST)
         total = sum(share for _, share in self.elements)

@@ -19,5 +19,4 @@ class Karnopp(StribeckCurve):
     band: float = param("rad/s", "abs(slip) below which it sticks", above=0.0, units=("m/s",), example=0.01)
 
     def sliding(self) -> float:
-        """Kinetic coefficient at vanishing slip."""
         return self.static

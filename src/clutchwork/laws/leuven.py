@@ -46,7 +46,6 @@ class Leuven(StribeckCurve):
         return self.states[: len(self.elements)]
 
     def problems(self) -> Found:
-        """What the bounds of single values cannot say, as (quantity, what is wrong, remedy)."""
         found = super().problems() + kinetic_problems(self.kinetic)
         found = found or element_problems(self.elements, 1, LARGEST)
         total = sum(share for _, share in self.elements)
@@ -56,5 +55,4 @@ class Leuven(StribeckCurve):
         return found
 
     def advice(self) -> Found:
-        """Properties that are rarely wanted, as (quantity, what is so, remedy)."""
         return passivity_advice(self, self.damping, self.order)

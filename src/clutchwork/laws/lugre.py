@@ -27,9 +27,7 @@ class LuGre(StribeckCurve):
     )
 
     def problems(self) -> Found:
-        """What the bounds of single values cannot say, as (quantity, what is wrong, remedy)."""
         return super().problems() + kinetic_problems(self.kinetic)
 
     def advice(self) -> Found:
-        """Properties that are rarely wanted, as (quantity, what is so, remedy)."""
         return passivity_advice(self, self.damping)

@@ -49,7 +49,6 @@ class Mykhalevych(Law):
     )
 
     def problems(self) -> Found:
-        """What the bounds of single values cannot say, as (quantity, what is wrong, remedy)."""
         found = static_problems(self.static, self.kinetic)
         if self.reset != "saturate" and self.range != 3.0:
             fault = f"is {self.range:g}, but reset {self.reset!r} has no range"
@@ -57,7 +56,6 @@ class Mykhalevych(Law):
         return found
 
     def advice(self) -> Found:
-        """Properties that are rarely wanted, as (quantity, what is so, remedy)."""
         if self.passive:
             return []
         found, fall = list[tuple[str, str, str]](), 1.0 - self.kinetic / self.static

@@ -17,5 +17,4 @@ class Stribeck(StribeckCurve):
     """
 
     def sliding(self) -> float:
-        """Kinetic coefficient at vanishing slip."""
         return self.static

@@ -25,7 +25,6 @@ class TemperatureTable(Tabulated):
     temperature: SignalLike | None = signal("K", "temperature of the lining", default=None)
 
     def problems(self) -> Found:
-        """What the bounds of single values cannot say, as (quantity, what is wrong, remedy)."""
         (places, static), (others, kinetic) = (zip(*points, strict=True) for points in (self.static, self.kinetic))
         found = few_points("static", len(places), self.interpolation)
         found += not_positive("static", static, "K", places) + not_positive("kinetic", kinetic, "K", others)

@@ -28,12 +28,13 @@ from clutchwork.declare.node import (
 )
 from clutchwork.declare.schema import Spec, specs
 from clutchwork.declare.to_si import TargetUnit, field_in_si, settled
+from clutchwork.model.components import component_problems
 from clutchwork.model.findings import findings
 from clutchwork.model.model import Model
 from clutchwork.model.parts import all_parts
-from clutchwork.model.problems import NODE_FIELDS
+from clutchwork.model.problems import NODE_FIELDS, node_problems
 from clutchwork.model.thermal import NODE_FIELDS as THERMAL_FIELDS
-from clutchwork.model.thermal import node_kind
+from clutchwork.model.thermal import node_kind, thermal_problems
 
 # sorts of fields that are joined, named or called, and make another driveline
 FIXED = ("port", "thermal", "text", "function", "named", "elements", "data")
@@ -190,12 +191,23 @@ def _below(name: str, thing: Any) -> Iterator[str]:
 
 
 def changed_model(model: Model, changes: Mapping[str, Any]) -> Model:
-    """The model with other values; ModelError names all that is unknown, and what is wrong with the others."""
+    """The model with other values; ModelError names all that is unknown, and all that is wrong with the others."""
     targets, problems = targets_of(model, changes)
-    made = with_values(model, [(found, changes[name]) for name, found in targets.items()])
+    new = _renewed_things(model, [(found, changes[name]) for name, found in targets.items()])
+    # what has mistakes of its own cannot be taken apart
+    wrong = [problem for thing in new.values() for problem in _own_problems(thing)]
+    made = model if wrong else _with_things(model, new)
+    problems += wrong or findings(made).problems
     if problems:
-        raise ModelError([*problems, *findings(made).problems], model.name)
+        raise ModelError(problems, model.name)
     return made
+
+
+def _own_problems(thing: Any) -> Iterable[Problem]:
+    """Mistakes of one shaft, thermal node or element, whatever stands beside it."""
+    if isinstance(thing, Node):
+        return node_problems(thing)
+    return thermal_problems(thing) if isinstance(thing, ThermalNode) else component_problems(thing)
 
 
 def targets_of(model: Model, names: Iterable[str]) -> tuple[dict[str, Target], list[Problem]]:
@@ -277,6 +289,11 @@ def _twice(targets: Mapping[str, Target]) -> Iterator[Problem]:
 
 def with_values(model: Model, changes: Iterable[tuple[Target, Any]]) -> Model:
     """The model with other values of the targets; whatever refers to what is changed refers to the new one."""
+    return _with_things(model, _renewed_things(model, changes))
+
+
+def _renewed_things(model: Model, changes: Iterable[tuple[Target, Any]]) -> dict[int, Any]:
+    """What has other values, by the identity of what stands in its place so far; references are still the old ones."""
     by_owner = dict[int, tuple[Any, list[tuple[tuple[str, ...], Any]]]]()
     for aim, value in changes:
         by_owner.setdefault(id(aim.owner), (aim.owner, []))[1].append((aim.path, value))
@@ -286,6 +303,11 @@ def with_values(model: Model, changes: Iterable[tuple[Target, Any]]) -> Model:
         own = made_of.get(id(element), element)
         changed = with_held(element, inner, own)
         made_of |= {id(element): changed} if changed is not element else {}
+    return made_of
+
+
+def _with_things(model: Model, made_of: Mapping[int, Any]) -> Model:
+    """The model with new things in the place of old ones."""
     new = Renewed(made_of)
     made = model.copy()
     made.nodes = [new.of(node) for node in model.nodes]

@@ -90,7 +90,7 @@ class Referents:
     def of(
         cls, nodes: Sequence[Node], thermal: Sequence[ThermalNode], elements: Sequence[Component], parts: Parts
     ) -> Referents:
-        """Everything in a driveline."""
+        """Collect all that a reference in a driveline may lead to."""
         states: dict[str, tuple[str, ...]] = {node.name: ("K",) for node in parts.thermal}
         for process in parts.components:
             if role(process) is Role.PROCESS:

@@ -58,7 +58,7 @@ def add_command(subparsers: Any) -> None:
 
 def page_command(asked: argparse.Namespace) -> int:
     """Write the page; the exit code."""
-    from clutchwork.declare.quantity import in_si
+    from clutchwork.declare.quantity import seconds
     from clutchwork.driveline.driveline import Driveline
     from clutchwork.page.data import PageRequest
     from clutchwork.page.page import page
@@ -70,7 +70,7 @@ def page_command(asked: argparse.Namespace) -> int:
         # `clutchwork check` says what is odd
         warnings.simplefilter("ignore", ModelWarning)
         system = Driveline.load(asked.model).assemble()
-        given = {} if asked.t_end is None else {"t_end": _seconds(asked.t_end, in_si)}
+        given = {} if asked.t_end is None else {"t_end": seconds(asked.t_end)}
         t_end, options = merged(system.settings, given)
         made = page(system, t_end, options, PageRequest(asked.drag, asked.slider, asked.show))
     put(out, made)
@@ -79,10 +79,3 @@ def page_command(asked: argparse.Namespace) -> int:
     else:
         shell.tell("\n".join(shell.wrote([out])))
     return shell.DONE
-
-
-def _seconds(text: str, in_si: Any) -> float:
-    try:
-        return float(text)
-    except ValueError:
-        return float(in_si(text, "s"))

@@ -69,7 +69,7 @@ def _beyond(system: System, slider: Slider) -> Iterator[str]:
     """Ends that were asked for, at which there is no driveline."""
     for end, reached in zip(slider.ends, slider.values[[0, -1]].tolist(), strict=True):
         if end != reached:
-            _, why = made(system, slider, slider, end, end)
+            _, why = made(system, slider.changes(end))
             yield f"slider: {slider.name} cannot reach {end:g} {slider.unit}: {why or 'that is another driveline'}"
 
 
@@ -125,7 +125,7 @@ def _pair(system: System, turned: Sequence[Slider], which: tuple[int, int], byte
     own = words_of(system, bytes_of)
     lines, none = list[Words](), dict[int, str]()
     for line, at in enumerate(product(values[0].tolist(), values[1].tolist())):
-        there, why = made(system, one, other, *at)
+        there, why = made(system, one.changes(at[0]) | other.changes(at[1]))
         data = own if there is None else words_of(there, bytes_of)
         if why or len(data) != len(own):
             data, none[line] = own, why or "these values make another driveline, which a page cannot become"

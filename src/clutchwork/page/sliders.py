@@ -6,17 +6,17 @@ from collections.abc import Collection, Sequence
 from contextlib import suppress
 from dataclasses import replace
 from itertools import combinations
-from math import inf, isfinite
+from math import isfinite
 from numbers import Real
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from clutchwork.base.errors import ModelError, UseError
-from clutchwork.declare.schema import Spec
+from clutchwork.base.errors import UseError
+from clutchwork.declare.schema import Spec, common_ends
 from clutchwork.model.changes import Target, all_names, field_of, in_si, named, target, targets_of, unit_of
 from clutchwork.page.slider import Bytes, Slider, Words, start_of
-from clutchwork.page.together import dependent
+from clutchwork.page.together import dependent, made, words_of
 from clutchwork.results.selection import meant
 
 if TYPE_CHECKING:
@@ -81,11 +81,11 @@ def _slider(system: System, asked: str, bytes_of: Bytes) -> Slider:
     start = start_of(starts)
     values = np.unique(np.append(np.linspace(low, high, STOPS), start if low <= start <= high else low))
     places, words = np.zeros(0, dtype=np.int64), np.zeros((len(values), 0), dtype=np.uint64)
-    made = Slider(name, names, unit, declared[0].doc, starts, (low, high), values, places, words, False)
-    made = _with_words(system, made, bytes_of)
-    if not len(made.places):
+    bare = Slider(name, names, unit, declared[0].doc, starts, (low, high), values, places, words, False)
+    slider = _with_words(system, bare, bytes_of)
+    if not len(slider.places):
         raise ValueError(f"{name} changes nothing in this driveline between {low:g} and {high:g} {unit}")
-    return made if span else replace(made, ends=(float(made.values[0]), float(made.values[-1])))
+    return slider if span else replace(slider, ends=(float(slider.values[0]), float(slider.values[-1])))
 
 
 def _asked(system: System, asked: str) -> tuple[str, str, tuple[str, ...]]:
@@ -177,9 +177,8 @@ def _span(aim: Target, name: str, text: str, starts: Sequence[float], declared: 
     if not any(starts):
         raise ValueError(f"{name} is 0: give the ends of its slider, {name}=0:10")
     reach = [factor * start for start in starts for factor in (0.5, 2.0)]
-    least = [-inf if bound is None else bound for spec in declared for bound in (spec.at_least, spec.above)]
-    most = [inf if bound is None else bound for spec in declared for bound in (spec.at_most, spec.below)]
-    return max(min(reach), *least), min(max(reach), *most)
+    least, most = common_ends(declared)
+    return max(min(reach), least), min(max(reach), most)
 
 
 def _number(aim: Target, name: str, text: str) -> float:
@@ -192,28 +191,25 @@ def _number(aim: Target, name: str, text: str) -> float:
     raise ValueError(f"{name}: {text.strip()!r} is not an end of its slider; give two numbers in {unit}, or with units")
 
 
-def _with_words(system: System, made: Slider, bytes_of: Bytes) -> Slider:
+def _with_words(system: System, slider: Slider, bytes_of: Bytes) -> Slider:
     """Words that any value changes, and what each value makes of them; values that are refused are left out."""
     lines, kept = list[Words](), list[float]()
     refused = ""
-    own = np.frombuffer(bytes_of(system), dtype=np.uint64)
-    for value in made.values.tolist():
-        try:
-            data = bytes_of(system.changed(made.changes(value)))
-        except ModelError as error:
-            refused = str(error)
-            continue
-        if len(data) == own.nbytes:
-            lines.append(np.frombuffer(data, dtype=np.uint64))
+    own = words_of(system, bytes_of)
+    for value in slider.values.tolist():
+        found, why = made(system, slider.changes(value))
+        refused = why or refused
+        if found is not None and len(data := words_of(found, bytes_of)) == len(own):
+            lines.append(data)
             kept.append(value)
     if len(kept) < 2:
-        raise ValueError(f"{made.name} cannot be turned: {refused or 'its values make other drivelines'}")
+        raise ValueError(f"{slider.name} cannot be turned: {refused or 'its values make other drivelines'}")
     whole, values = np.array(lines), np.array(kept)
     places = np.flatnonzero((whole != own).any(axis=0))
     words = np.ascontiguousarray(whole[:, places])
-    turned = values != made.start
+    turned = values != slider.start
     direct = bool(len(places)) and bool(np.all(words[turned].view(np.float64) == values[turned, None]))
-    return replace(made, values=values, places=places, words=words, direct=direct)
+    return replace(slider, values=values, places=places, words=words, direct=direct)
 
 
 def _twice(found: Sequence[Slider]) -> list[str]:

@@ -11,13 +11,15 @@ from clutchwork.base.errors import ModelError
 from clutchwork.page.slider import Bytes, Slider, Words
 
 if TYPE_CHECKING:
+    from collections.abc import Mapping
+
     from clutchwork.assembly.system import System
 
 
-def made(system: System, one: Slider, other: Slider, first: float, second: float) -> tuple[System | None, str]:
-    """The System at two values, or why there is none."""
+def made(system: System, changes: Mapping[str, float]) -> tuple[System | None, str]:
+    """The System with other numbers, or why there is none."""
     try:
-        return system.changed(one.changes(first) | other.changes(second)), ""
+        return system.changed(changes), ""
     except ModelError as error:
         return None, str(error).strip().splitlines()[-1].strip()
 
@@ -34,8 +36,9 @@ def refused(system: System, one: Slider, other: Slider) -> bool:
 
 
 def _refused(system: System, one: Slider, other: Slider, first: float, second: float) -> bool:
-    alone = (made(system, one, other, first, other.start)[1], made(system, one, other, one.start, second)[1])
-    return bool(made(system, one, other, first, second)[1]) != any(alone)
+    changes = one.changes(first), other.changes(second)
+    alone = [why for own in changes if (why := made(system, own)[1])]
+    return bool(made(system, changes[0] | changes[1])[1]) != bool(alone)
 
 
 def dependent(system: System, one: Slider, other: Slider, bytes_of: Bytes) -> bool:
@@ -53,7 +56,7 @@ def _few(slider: Slider) -> tuple[float, float]:
 
 
 def _differs(system: System, one: Slider, other: Slider, first: float, second: float, bytes_of: Bytes) -> bool:
-    found, _ = made(system, one, other, first, second)
+    found, _ = made(system, one.changes(first) | other.changes(second))
     if found is None:
         return False
     words = words_of(system, bytes_of).copy()

@@ -143,7 +143,7 @@ def panels_of(
         units = list(dict.fromkeys(curve.unit for curve in found))
         if own and len(units) > MOST_UNITS:
             remedy = f"give a list for each of {listed(unit or 'state' for unit in units)}, or names without a list"
-            raise UseError(call, [f"{quote(list(names))} has {len(units)} units, one panel shows two; {remedy}"])
+            raise UseError(call, [f"{quote(list(names))} has {len(units)} units, a panel has two axes; {remedy}"])
         if own:
             made.append(Panel(tuple(Side(tuple(c for c in found if c.unit == unit)) for unit in units)))
             continue

@@ -245,7 +245,7 @@ def legend(axes: Axes, title: str = "") -> None:
 
 
 def window(run: Recorded, event: Event) -> tuple[float, float]:
-    """Stretch of time around an event that shows the lock-up [s]."""
+    """Time window [s] around a lock-up."""
     half = 0.025 * (run.time[-1] - run.time[0])
     return max(float(run.time[0]), event.time - half), min(float(run.time[-1]), event.time + half)
 

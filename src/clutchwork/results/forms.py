@@ -57,7 +57,7 @@ class Form(ABC):
 
     @abstractmethod
     def data(self) -> list[Any]:
-        """A letter, then numbers and inner forms: what the script of a page evaluates."""
+        """A letter, then numbers and inner forms, of which there are sums and products: what a page evaluates."""
 
     def is_rate_of_structure(self) -> bool:
         """Whether it is a rate without a radius or a ratio in it."""

@@ -149,7 +149,7 @@ def _read_head(data: bytes) -> dict[str, Any]:
     """The fields beside the bytes; ValueError where they are not what they must be."""
     head = json.loads(data)
     if not isinstance(head, dict) or head.get("format") != FORMAT:
-        raise ValueError("it is of another version")
+        raise ValueError("it was written by another version")
     kinds = {"time": float, "model": str, "fingerprint": str, "held": dict, "changed": dict}
     if any(not isinstance(head.get(name), kind) for name, kind in kinds.items()):
         raise ValueError("its head is damaged")

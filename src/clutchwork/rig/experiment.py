@@ -43,7 +43,7 @@ class Experiment:
         raise NotImplementedError
 
     def columns(self, preset: Preset) -> tuple[TableColumn, ...]:
-        """What `measure` gives, after the column with the law."""
+        """Headings of what `measure` returns, after the column of the law."""
         raise NotImplementedError
 
     def measure(self, trial: Trial) -> Sequence[float]:

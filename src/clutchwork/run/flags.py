@@ -19,7 +19,7 @@ def add_options(
 ) -> None:
     """Add an argument for each of the options; a number may have a unit, such as "1 ms".
 
-    Parameters: names of the options; defaults, words for those of options that have no value by default.
+    Parameters: names of the options; defaults, the text shown for options without a default value.
     """
     group = parser.add_argument_group("options of the run", "they overrule the [simulation] table of the model file")
     for name in names:

@@ -125,7 +125,7 @@ def _noted(line: Any, inputs: int, params: int) -> tuple[int, str, str, Any, Num
     made = tuple((int(place), tuple(map(_segment, one)) if table else float(one)) for place, one in numbers)
     most = params if kind == "param" else inputs
     if kind not in KINDS or not all(0 <= place < most for place, _ in made):
-        raise ValueError("what was set is damaged")
+        raise ValueError("the settings made during the run are damaged")
     return int(number), str(kind), str(name), value_of(value) if table else value, made
 
 

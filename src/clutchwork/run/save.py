@@ -14,9 +14,9 @@ from clutchwork.assembly.system import PARTS
 from clutchwork.assembly.wiring import wiring
 from clutchwork.base import archive
 from clutchwork.base.errors import ClutchworkError, ModelError, ModelWarning
+from clutchwork.base.extras import program
 from clutchwork.base.plural import counted
 from clutchwork.declare.options import OPTIONS
-from clutchwork.exchange.content import program
 from clutchwork.model.settings import plain_settings
 from clutchwork.results.channels import Channels
 from clutchwork.results.state import PARTS as STATE_PARTS

@@ -18,6 +18,7 @@ from clutchwork.assembly.wiring import wiring
 from clutchwork.base import archive
 from clutchwork.base.classes import dataclass
 from clutchwork.base.errors import ClutchworkError, ModelWarning
+from clutchwork.base.extras import program
 from clutchwork.base.paths import path_of
 from clutchwork.base.quote import listed, shortened
 from clutchwork.base.regular import reason
@@ -25,7 +26,6 @@ from clutchwork.declare.calls import explained
 from clutchwork.declare.layout import MODES, STATUSES
 from clutchwork.declare.options import Options
 from clutchwork.declare.wording import say
-from clutchwork.exchange.content import program
 from clutchwork.results.channels import channels
 from clutchwork.results.events import Event, Events
 from clutchwork.results.state import State
@@ -88,7 +88,7 @@ def _about(data: bytes, path: str | Path) -> Mapping[str, Any]:
         raise RunFormatError(f"{path} was saved by {by} in format {about['format']}; {here} reads {FORMAT}: update it")
     missing = [key for key in ("system", "t_end", "options", "status", "message", "statistics") if key not in about]
     if missing:
-        raise ValueError(f"it does not say {listed(missing)}")
+        raise ValueError(f"it lacks {listed(missing)}")
     if about["status"] not in STATUSES:
         raise ValueError("its status is none that a run has")
     return about

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 from clutchwork.base import shell
 from clutchwork.base.errors import ModelError, ModelWarning
-from clutchwork.declare.quantity import in_si
+from clutchwork.declare.quantity import seconds
 from clutchwork.declare.wording import words_of_files
 
 if TYPE_CHECKING:
@@ -52,7 +52,7 @@ def draw_command(asked: argparse.Namespace) -> int:
     from clutchwork.files.model_file import load
     from clutchwork.schematic.draw import drawn
 
-    times = [_seconds(text) for text in asked.at]
+    times = [seconds(text) for text in asked.at]
     out = asked.out or Path(asked.model.with_suffix(".svg").name)
     paths = [out] if len(times) < 2 else [out.with_name(f"{out.stem}_{at:g}{out.suffix}") for at in times]
     shell.writable(paths)
@@ -66,13 +66,6 @@ def draw_command(asked: argparse.Namespace) -> int:
     else:
         shell.tell("\n".join(shell.wrote(paths)))
     return shell.DONE
-
-
-def _seconds(text: str) -> float:
-    try:
-        return float(text)
-    except ValueError:
-        return float(in_si(text, "s"))
 
 
 def _run(model: Model, last: float) -> Trajectory:

@@ -35,7 +35,7 @@ def drawn(
     power: bool = False,
     width: float = MILLIMETRES,
 ) -> Schematic:
-    """The schematic of a model; with a run, of its state at an instant [s]; UseError for what does not fit."""
+    """Lay out the schematic of a model, with a run of its state at an instant [s]; UseError names what does not fit."""
     time = _seconds(at)
     problems = [*_problems(model, path, run, time), *_width_problems(width)]
     if problems:

@@ -111,7 +111,7 @@ class ShiftController:
 
     @property
     def shifting(self) -> bool:
-        """Whether a shift goes on."""
+        """Whether a shift is in progress."""
         return self._course is not None
 
     @property

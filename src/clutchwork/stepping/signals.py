@@ -42,7 +42,7 @@ class Settable(NamedTuple):
         return (0.0 if found else float(given)), found
 
     def told(self, value: float) -> tuple[tuple[int, float], ...]:
-        """What the core is given."""
+        """The value for each of its inputs in the core."""
         return tuple([(number, value) for number in self.numbers])
 
 

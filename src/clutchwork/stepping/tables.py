@@ -34,7 +34,7 @@ def tabled(system: System, name: str, signal: Settable, table: Table, time: floa
 
 
 def ahead(table: Table, time: float) -> tuple[Segment, ...]:
-    """Pieces of a table from that of a time [s] on."""
+    """Pieces of a table from the one at a time [s] on."""
     pieces = table.segments()
     past = sum(piece.start <= time for piece in pieces[1:])
     return pieces[past:]

@@ -192,7 +192,7 @@ def at(signal: str, times: Sequence[float] | float) -> AtTimes:
 
     Parameters: signal, its name; times [s], one or several that rise.
     """
-    _named("at", signal)
+    named("at", signal)
     plain = instants(times)
     try:
         found = tuple(float(time) for time in np.atleast_1d(np.asarray(plain, dtype=float)))
@@ -206,25 +206,25 @@ def at(signal: str, times: Sequence[float] | float) -> AtTimes:
 @explained("cw.maximum")
 def maximum(signal: str) -> Extreme:
     """The largest value of a signal, for `sweep`."""
-    return Extreme(_named("maximum", signal), "maximum")
+    return Extreme(named("maximum", signal), "maximum")
 
 
 @explained("cw.minimum")
 def minimum(signal: str) -> Extreme:
     """The smallest value of a signal, for `sweep`."""
-    return Extreme(_named("minimum", signal), "minimum")
+    return Extreme(named("minimum", signal), "minimum")
 
 
 @explained("cw.peak")
 def peak(signal: str) -> Extreme:
     """The largest size of a signal, whatever its sign, for `sweep`."""
-    return Extreme(_named("peak", signal), "peak")
+    return Extreme(named("peak", signal), "peak")
 
 
 @explained("cw.integral")
 def integral(signal: str) -> Integral:
     """The integral over time of a power, a speed or an acceleration, for `sweep`."""
-    return Integral(_named("integral", signal))
+    return Integral(named("integral", signal))
 
 
 @explained("cw.squared_jerk", shaft="'load'")
@@ -235,7 +235,7 @@ def squared_jerk(shaft: str) -> SquaredJerk:
     acceleration jumps, as it does when a clutch locks, the jerk has no square, and the jump itself does not count: ask
     for it by `cw.peak`, or soften what makes it. docs/theory/gradients.md (15)
     """
-    return SquaredJerk(_named("squared_jerk", shaft))
+    return SquaredJerk(named("squared_jerk", shaft, "load"))
 
 
 @explained("cw.lock")
@@ -244,7 +244,7 @@ def lock(contact: str, number: int = 1) -> When:
 
     Parameters: contact, its name; number, which time: 1 the first, -1 the last.
     """
-    return When(_named("lock", contact), "lock", _counted("lock", number))
+    return When(named("lock", contact, "c1"), "lock", _counted("lock", number))
 
 
 @explained("cw.break_away")
@@ -253,12 +253,13 @@ def break_away(contact: str, number: int = 1) -> When:
 
     Parameters: contact, its name; number, which time: 1 the first, -1 the last.
     """
-    return When(_named("break_away", contact), "break_away", _counted("break_away", number))
+    return When(named("break_away", contact, "c1"), "break_away", _counted("break_away", number))
 
 
-def _named(call: str, name: object) -> str:
+def named(call: str, name: object, such: str = "shaft.torque") -> str:
+    """A name that a call was given; UseError where it is none, with one such as is meant."""
     if not isinstance(name, str):
-        raise UseError(call, [f"{quote(name)} is not a name; give one such as 'shaft.torque'"])
+        raise UseError(call, [f"{quote(name)} is not a name; give one such as {such!r}"])
     return name
 
 

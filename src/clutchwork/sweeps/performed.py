@@ -22,7 +22,6 @@ from clutchwork.sweeps import outputs as made
 from clutchwork.sweeps.asking import CALLS, KNOWN
 from clutchwork.sweeps.result import Sweep, SweepInterrupted
 from clutchwork.sweeps.sweep import sweep
-from clutchwork.sweeps.table import without_values
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -77,7 +76,7 @@ def _text(found: Sweep) -> list[str]:
     lines = [("output", "least", "most", "unit")]
     lines += [(name, f"{low:.6g}", f"{high:.6g}", found.units[name]) for name, low, high in _ranges(found)]
     ends = ", ".join(f"{count} {end}" for end, count in _ends(found).items())
-    return [f"{counted(len(found), 'variants')}: {ends}", columns(lines, right={1, 2}), *without_values(found)]
+    return [f"{counted(len(found), 'variants')}: {ends}", columns(lines, right={1, 2}), *found.without_values()]
 
 
 def _data(found: Sweep) -> dict[str, Any]:

@@ -24,7 +24,7 @@ from clutchwork.results.selection import chosen
 from clutchwork.run.simulation import told
 from clutchwork.sweeps.outputs import AtTimes, Computed, Integral, Output, SquaredJerk, When
 from clutchwork.sweeps.single import single
-from clutchwork.sweeps.table import page, text
+from clutchwork.sweeps.table import Shown
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping
@@ -217,11 +217,21 @@ class Sweep:
 
     def __str__(self) -> str:
         """What `print` shows: how the variants ended, and the first lines of the table."""
-        return text(self)
+        return self._shown().text()
 
     def _repr_html_(self) -> str:
         """The first lines of the table for a notebook."""
-        return page(self)
+        return self._shown().page()
+
+    def _shown(self) -> Shown:
+        notes = list(self.without_values())
+        return Shown(repr(self), len(self), dict(self.columns()), self.column_units(), notes)
+
+    def without_values(self) -> Iterator[str]:
+        """A line for each output that some variants do not have, such as the lock-up of a clutch that never locks."""
+        for name in self.names:
+            if count := self.without_value(name):
+                yield f"{name}: no value in {count} of {counted(len(self), 'variants')}"
 
     def without_value(self, name: str) -> int:
         """How many variants have no value of an output: a contact that never locks, a run that stopped before it."""

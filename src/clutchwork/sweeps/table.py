@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any, Protocol
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 from clutchwork.base import html
 from clutchwork.base.plural import columns, counted
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator, Sequence
+    from collections.abc import Mapping, Sequence
 
     import numpy as np
     from numpy.typing import NDArray
@@ -16,57 +16,35 @@ if TYPE_CHECKING:
 MOST_SHOWN = 12
 
 
-class Tabled(Protocol):
-    """What is asked of a sweep."""
+class Shown(NamedTuple):
+    """What is shown of a sweep."""
 
-    @property
-    def names(self) -> Sequence[str]:
-        """Names of all outputs."""
+    title: str
+    variants: int
+    columns: Mapping[str, NDArray[np.generic]]
+    units: Mapping[str, str]
+    notes: Sequence[str]
 
-    def __len__(self) -> int: ...
+    def text(self) -> str:
+        """How the variants ended, and the first ones."""
+        heads, cells = self._table("{} [{}]")
+        table = columns([heads, *cells], right=range(len(heads) - 1))
+        return "\n".join([self.title, "", table, *self._below()])
 
-    def columns(self) -> Iterator[tuple[str, NDArray[np.generic]]]:
-        """Columns of the table."""
+    def page(self) -> str:
+        """The same for a notebook."""
+        heads, cells = self._table("{}, {}")
+        table = html.table(heads, cells, right=range(len(heads) - 1))
+        return html.page(html.heading(self.title.strip("<>")), table, *map(html.paragraph, self._below()))
 
-    def column_units(self) -> dict[str, str]:
-        """Their units."""
+    def _below(self) -> list[str]:
+        more = self.variants - MOST_SHOWN
+        return [f"... and {counted(more, 'more variants')}", *self.notes] if more > 0 else [*self.notes]
 
-    def without_value(self, name: str) -> int:
-        """How many variants have no value of an output."""
-
-
-def text(found: Tabled) -> str:
-    """How the variants ended, and the first ones."""
-    heads, cells = _table(found, "{} [{}]")
-    table = columns([heads, *cells], right=range(len(heads) - 1))
-    return "\n".join([repr(found), "", table, *_more(found), *without_values(found)])
-
-
-def page(found: Tabled) -> str:
-    """The same for a notebook."""
-    heads, cells = _table(found, "{}, {}")
-    words = [html.paragraph(line) for line in (*_more(found), *without_values(found))]
-    head = html.heading(repr(found).strip("<>"))
-    return html.page(head, html.table(heads, cells, right=range(len(heads) - 1)), *words)
-
-
-def without_values(found: Tabled) -> Iterator[str]:
-    """A line for each output that some variants do not have, such as the lock-up of a clutch that never locks."""
-    for name in found.names:
-        if count := found.without_value(name):
-            yield f"{name}: no value in {count} of {counted(len(found), 'variants')}"
-
-
-def _more(found: Tabled) -> Iterator[str]:
-    if len(found) > MOST_SHOWN:
-        yield f"... and {counted(len(found) - MOST_SHOWN, 'more variants')}"
-
-
-def _table(found: Tabled, head: str) -> tuple[list[str], list[list[str]]]:
-    units, table = found.column_units(), dict(found.columns())
-    heads = [head.format(name, units[name]) if name in units else name for name in table]
-    lines = zip(*(column[:MOST_SHOWN].tolist() for column in table.values()), strict=True)
-    return heads, [[_cell(cell) for cell in line] for line in lines]
+    def _table(self, head: str) -> tuple[list[str], list[list[str]]]:
+        heads = [head.format(name, self.units[name]) if name in self.units else name for name in self.columns]
+        lines = zip(*(column[:MOST_SHOWN].tolist() for column in self.columns.values()), strict=True)
+        return heads, [[_cell(cell) for cell in line] for line in lines]
 
 
 def _cell(value: Any) -> str:

@@ -4,17 +4,7 @@ from __future__ import annotations
 
 from typing import Any
 
-from clutchwork.declare import (
-    GAIN_OF_FORCE,
-    GAIN_OF_PRESSURE,
-    Law,
-    SignalLike,
-    family,
-    law,
-    option,
-    param,
-    signal,
-)
+from clutchwork.declare import GAIN_OF_FORCE, GAIN_OF_PRESSURE, Law, SignalLike, family, law, option, param, signal
 from clutchwork.elements.bases.heating import Heating
 
 

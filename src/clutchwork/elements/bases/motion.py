@@ -30,7 +30,6 @@ class PrescribedMotion(Component):
     base: Node | None = port("member that takes the reaction and that the motion is measured from", default=None)
 
     def problems(self) -> Found:
-        """What the bounds of single values cannot say, as (quantity, what is wrong, remedy)."""
         given = ((item.name, getattr(self, item.name)) for item, _ in specs(type(self), "signal"))
         remedy = "give a number or a signal, or join them by a gear"
         return [

@@ -37,7 +37,6 @@ class WheelPair(Component):
     teeth_output: int | None = param("1", "teeth of the output wheel, negative if internal", default=None, whole=True)
 
     def problems(self) -> Found:
-        """What the bounds of single values cannot say, as (quantity, what is wrong, remedy)."""
         teeth = ("teeth_input", "teeth_output")
         zero = [name for name in ("ratio", *teeth) if getattr(self, name) == 0]
         remedy = "give a number other than zero; a fixed shaft is the housing"
@@ -60,7 +59,6 @@ class PlanetarySet(Component):
     teeth_ring: int | None = param("1", "teeth of the ring, counted positive", default=None, above=0.0, whole=True)
 
     def problems(self) -> Found:
-        """What the bounds of single values cannot say, as (quantity, what is wrong, remedy)."""
         sun, ring = self.teeth_sun, self.teeth_ring
         found = ratio_problems(self, "ratio", ("teeth_sun", "teeth_ring"))
         if not found and sun is not None and ring is not None and ring <= sun:

@@ -41,7 +41,6 @@ class StribeckCurve(Law):
     )
 
     def problems(self) -> Found:
-        """What the bounds of single values cannot say, as (quantity, what is wrong, remedy)."""
         found = static_problems(self.static, self.kinetic)
         if self.shape != "power" and self.exponent != 2.0:
             fault = f"is {self.exponent:g}, but shape {self.shape!r} has no exponent"

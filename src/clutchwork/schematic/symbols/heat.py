@@ -86,7 +86,7 @@ def wear(pen: SymbolPen, _: Drawn) -> None:
 
 
 def process(pen: SymbolPen, _: Drawn) -> None:
-    """Any other process: what it does is integrated."""
+    """Symbol of any other process: an integrator."""
     pen.box(-11.0, -8.0, 11.0, 8.0, look=SLOT)
     pen.text(0.0, -3.4, "∫", 10.0, SIGNAL_BODY.colour)
 

@@ -21,9 +21,7 @@ def drive_cycle(stages: Sequence[tuple[float, float, float]], *, start: float = 
         speed, reach, hold = _stage(number, stage)
         if not (reach > 0.0 and hold >= 0.0):
             fault = f"stage {number} takes {reach:g} s to {speed:g} m/s and holds it for {hold:g} s"
-            raise UseError(
-                "cw.drive_cycle", [f"{fault}: give a time above zero to reach it, and none below zero to hold it"]
-            )
+            raise UseError("cw.drive_cycle", [f"{fault}: give a time > 0 s to reach it and a time >= 0 s to hold it"])
         time += reach
         points.append((time, float(speed)))
         time += hold

@@ -66,7 +66,7 @@ class FileColumns(Sequence[FileColumn]):
 
 @explained("cw.read_columns", path="'measured.mf4'")
 def read_columns(path: str | Path) -> FileColumns:
-    """What a file of measurements holds, which `cw.Column` can follow: names, units, numbers of samples, groups.
+    """List the columns of a file of measurements for `cw.Column`: names, units, numbers of samples, groups.
 
     Parameters: path of a CSV, MDF, MAT, Parquet or NetCDF file. FileError, a ValueError, where it cannot be read.
     """
