@@ -26,7 +26,7 @@ PUBLIC = [
     *("ModelError", "ModelWarning", "Node", "OptionError", "Options", "Problem", "Rate", "Signal", "SimulationError"),
     *("Simulator", "State", "StateError"),
     *("StoppedEarly", "System", "ThermalNode", "Trajectory", "UnknownName", "UseError"),
-    *("compare", "diagram", "draw", "export_c", "fit", "rig", "shifts", "simulate"),
+    *("compare", "diagram", "draw", "export_c", "export_fmu", "fit", "rig", "shifts", "simulate"),
     *(
         "OutputWarning",
         "Sweep",

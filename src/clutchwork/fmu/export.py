@@ -105,6 +105,7 @@ def identifier_of(name: str) -> str:
 
 def _picture(system: System) -> bytes:
     """The schematic."""
+    # it needs an extra, which an FMU without a picture does not
     from clutchwork.driveline.draw import draw
 
     with TemporaryDirectory() as folder:
