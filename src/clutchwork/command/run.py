@@ -26,7 +26,7 @@ from clutchwork.base.shell import (
     writable,
     wrote,
 )
-from clutchwork.command.models import add_set, system_of
+from clutchwork.command.models import add_set, add_trust, system_of
 from clutchwork.command.progress import bar
 from clutchwork.declare.wording import words_of_files
 from clutchwork.run.flags import add_options, given_options
@@ -58,6 +58,7 @@ def add_commands(commands: Any) -> None:
     )
     add_model(run)
     add_set(run)
+    add_trust(run)
     run.add_argument(
         "--signals",
         metavar="NAMES",
@@ -112,7 +113,7 @@ def add_commands(commands: Any) -> None:
     # what a demonstration shares with a run
     demo.set_defaults(set=[], signals=None, units=[], ratio=None, plot=None, csv=None, events=None, write=[], save=None)
     demo.set_defaults(start=None, save_state=None, losses=False, sankey=None)
-    demo.set_defaults(quiet=False)
+    demo.set_defaults(quiet=False, trust=False)
 
 
 def run_command(asked: argparse.Namespace) -> int:
@@ -127,7 +128,7 @@ def run_command(asked: argparse.Namespace) -> int:
 
     wanted = _wanted(asked)
     writable(wanted)
-    system = system_of(asked.model, asked.set)
+    system = system_of(asked.model, asked.set, trust=asked.trust)
     shafts = chosen_shafts(system, asked.ratio)
     start = State.load(asked.start) if asked.start is not None else None
     with words_of_files():

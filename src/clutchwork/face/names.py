@@ -12,6 +12,8 @@ NAMES = {
     "Event": "results.events",
     "Events": "results.events",
     "Differentiable": "gradients.differentiable",
+    "FMU": "fmu_import.fmu",
+    "FMUError": "base.errors",
     "FaultWarning": "run.failure",
     "Gradient": "results.gradient",
     "Gearbox": "gearbox.gearbox",

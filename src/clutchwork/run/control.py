@@ -8,6 +8,10 @@ from dataclasses import field
 from typing import TYPE_CHECKING, Any
 
 from clutchwork.base.classes import dataclass
+from clutchwork.base.errors import FMUError
+from clutchwork.fmu_import.guests import Guests
+from clutchwork.fmu_import.output import Output
+from clutchwork.results.state import StateError
 from clutchwork.run.trajectory import SimulationError
 
 if TYPE_CHECKING:
@@ -33,6 +37,8 @@ class Controller:
         try:
             given = self.function(time, readings)
             value = math.nan if given is None else float(given)
+        except FMUError as error:
+            raise SimulationError(str(error)) from error
         except Exception as error:
             raise SimulationError(f"controller of {self.name!r} failed at {time:.9g} s: {error!r}") from error
         if not math.isfinite(value):
@@ -41,13 +47,31 @@ class Controller:
         return value
 
 
-def controllers(inputs: Sequence[Input], held: Container[str] = ()) -> tuple[Controller, ...]:
-    """The inputs of a System that Python functions set, without those that are held from outside."""
+def controllers(
+    inputs: Sequence[Input], held: Container[str] = (), guests: Guests | None = None
+) -> tuple[Controller, ...]:
+    """The inputs of a System that Python functions set, without those that are held from outside.
+
+    Parameters: guests, the FMUs of the run that asks them.
+    """
     return tuple(
-        Controller(item.name, index, *sampling)
+        Controller(item.name, index, sampling.period, guests.bound(sampling.function) if guests else sampling.function)
         for index, item in enumerate(inputs)
         if (sampling := item.signal.sampling()) is not None and item.name not in held
     )
+
+
+def guests_of(inputs: Sequence[Input]) -> Guests:
+    """The FMUs of other people that a run of a System needs, none of them started yet."""
+    return Guests(sampling.function for item in inputs if (sampling := item.signal.sampling()) is not None)
+
+
+def refuse_guests(inputs: Sequence[Input], held: Container[str] = ()) -> None:
+    """StateError where FMUs set inputs of a System: no state of a run holds theirs."""
+    names = [one.name for one in controllers(inputs, held) if isinstance(one.function, Output)]
+    if names:
+        why = "which begins at the start of a run, and no state of a run holds its own"
+        raise StateError(f"{names[0]!r} is set by an FMU, {why}: run from the start, or set it to a number or a table")
 
 
 Settings = list[tuple[int, float]]
@@ -62,6 +86,7 @@ class Control:
     log: dict[float, Settings] = field(default_factory=dict)
     held: Held = field(default_factory=dict)  # from outside, since before the run
     changed: Mapping[str, Any] = field(default_factory=dict)
+    guests: Guests = field(default_factory=Guests)  # FMUs of other people
     first: NDArray[np.float64] | None = None  # the row that controllers see where a run goes on from a state
 
     def act(self, run: Any, time: float, number: int) -> bool:

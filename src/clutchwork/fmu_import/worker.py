@@ -1,0 +1,95 @@
+"""The process of an FMU: loads its library and answers a run until that has gone.
+
+    python -I -m clutchwork.fmu_import.worker FOLDER
+
+FOLDER holds the FMU, unpacked, and `job.json`. Requests come by what is the standard input at the start, answers go to
+what is the standard output then; neither is that any more when the library is loaded, for FMUs print.
+"""
+
+from __future__ import annotations
+
+import ctypes
+import json
+import os
+import signal
+import sys
+from pathlib import Path
+from threading import Thread
+from time import sleep
+from typing import BinaryIO
+
+from clutchwork.fmu_import.fmi2 import Instance2
+from clutchwork.fmu_import.fmi3 import Instance3
+from clutchwork.fmu_import.library import FailedCall, Instance, Job
+from clutchwork.fmu_import.messages import Answer, Format, Order, Request
+
+JOB = "job.json"
+
+
+def main(folder: str) -> None:
+    """Answer requests; nothing that an FMU prints gets to anybody."""
+    requests, answers = _pipes()
+    job = Job(**json.loads(Path(folder, JOB).read_text(encoding="utf-8")))
+    # Ctrl-C is for the run
+    signal.signal(signal.SIGINT, signal.SIG_IGN)
+    Thread(target=_follow, args=(os.getppid(),), daemon=True).start()
+    form = Format(len(job.inputs), len(job.outputs))
+    instance: Instance | None = None
+    while (asked := form.read_request(requests)) is not None:
+        try:
+            instance = instance or _loaded(job)
+            outputs = _do(instance, asked)
+            answer, text = Answer.DONE, ""
+        except FailedCall as failed:
+            said = instance.said if instance else ""
+            outputs, answer, text = [], failed.answer, f"{failed.text}: {said}" if said else failed.text
+        answers.write(form.reply(answer, outputs, text))
+        answers.flush()
+        if asked.order is Order.END:
+            break
+    # what an FMU does when its library goes is its own affair
+    os._exit(0)
+
+
+def _pipes() -> tuple[BinaryIO, BinaryIO]:
+    """The pipes to the run, on numbers that an FMU does not know; its own go nowhere."""
+    requests, answers = os.dup(0), os.dup(1)
+    nowhere = os.open(os.devnull, os.O_RDWR)
+    for number in (0, 1, 2):
+        os.dup2(nowhere, number)
+    os.close(nowhere)
+    return os.fdopen(requests, "rb"), os.fdopen(answers, "wb")
+
+
+def _follow(parent: int) -> None:
+    """End with the process of the run, also while the FMU is busy."""
+    while os.getppid() == parent:
+        sleep(1.0)
+    os._exit(1)
+
+
+def _loaded(job: Job) -> Instance:
+    path = str(Path(job.folder, job.library))
+    try:
+        library = ctypes.CDLL(path)
+    except OSError as error:
+        # the path is one of a moment
+        raise FailedCall(Answer.NO_LIBRARY, str(error).replace(job.folder, "")) from None
+    return (Instance3 if job.version == "3.0" else Instance2)(library, job)
+
+
+def _do(instance: Instance, asked: Request) -> list[float]:
+    """Do what is asked; the outputs then."""
+    instance.said = ""
+    if asked.order is Order.END:
+        instance.end()
+        return []
+    if asked.order is Order.BEGIN:
+        instance.begin(asked.time, asked.inputs)
+    else:
+        instance.step(asked.time, asked.size, asked.inputs)
+    return instance.outputs()
+
+
+if __name__ == "__main__":
+    main(sys.argv[1])
