@@ -79,9 +79,8 @@ class Instance2:
     def _has_terminated(self) -> bool:
         known = c.c_int(0)
         status = getattr(self.library, "fmi2GetBooleanStatus", None)
-        return (
-            status is not None and status(c.c_void_p(self.component), TERMINATED, c.byref(known)) == 0 and known.value
-        )
+        answered = status is not None and status(c.c_void_p(self.component), TERMINATED, c.byref(known)) == 0
+        return answered and bool(known.value)
 
     def _set(self, inputs: Sequence[float]) -> None:
         for (reference, kind), value in zip(self.job.inputs, inputs, strict=True):

@@ -54,7 +54,7 @@ class Instance3:
         """Set inputs and step."""
         self._set(inputs)
         needed, terminate, early, last = c.c_bool(), c.c_bool(), c.c_bool(), c.c_double()
-        places = map(c.byref, (needed, terminate, early, last))
+        places = [c.byref(needed), c.byref(terminate), c.byref(early), c.byref(last)]
         self._call("fmi3DoStep", c.c_double(time), c.c_double(size), c.c_bool(True), *places)
         if terminate.value:
             raise FailedCall(Answer.TERMINATED, "fmi3DoStep")

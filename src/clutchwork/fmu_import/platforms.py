@@ -17,8 +17,7 @@ PROCESSORS = {"amd64": "x86_64", "x86_64": "x86_64", "arm64": "aarch64", "aarch6
 
 def library_of(made: Description, names: Sequence[str]) -> str:
     """The entry with the library for this machine; FMUError names the platforms that there are."""
-    ending = ENDINGS.get(sys.platform, ".so")
-    known = [f"binaries/{folder}/{made.identifier}{ending}" for folder in _folders(made.version)]
+    known = places(made.version, made.identifier)
     found = next((name for name in known if name in names), None)
     if found is None:
         there = sorted({name.split("/")[1] for name in names if name.startswith("binaries/") and name.count("/") > 1})
@@ -27,8 +26,14 @@ def library_of(made: Description, names: Sequence[str]) -> str:
     return found
 
 
+def places(version: str, identifier: str) -> list[str]:
+    """Entries that may be the library for this machine, the one of the standard first."""
+    ending = ENDINGS.get(sys.platform, ".so")
+    return [f"binaries/{folder}/{identifier}{ending}" for folder in _folders(version)]
+
+
 def _folders(version: str) -> list[str]:
-    """Folders for this machine, the one of the standard first."""
+    """Folders for this machine, the likely one first."""
     processor = PROCESSORS.get(platform.machine().lower(), platform.machine().lower())
     system = sys.platform
     three = f"{processor}-{THREE.get(system, system)}"

@@ -23,6 +23,8 @@ from clutchwork.fmu_import.messages import Answer, Format, Order
 from clutchwork.fmu_import.worker import JOB
 
 WORKER = ("-I", "-m", "clutchwork.fmu_import.worker")
+# what Python gets to start [s]
+START = 60.0
 # what it gets to free itself at the end [s]
 PATIENCE = 2.0
 WORDS = {
@@ -55,16 +57,25 @@ class Process:
             shutil.rmtree(folder, ignore_errors=True)
             raise
         self._end = weakref.finalize(self, _ended, self._process, folder)
+        if len(self._answer(max(time_limit, START)) or b"") < self._form.reply_size:
+            self._end()
+            raise FMUError("its process did not start: is clutchwork installed for this Python?")
 
     def ask(self, order: Order, time: float, size: float, inputs: Sequence[float]) -> tuple[float, ...]:
         """Let the FMU do something; its outputs. FMUError says how it failed."""
+        if not self._end.alive:
+            raise FMUError("was interrupted before it had answered: begin anew")
         told = self._form.request(order, time, size, inputs)
         try:
             _pipe(self._process.stdin).write(told)
             _pipe(self._process.stdin).flush()
-            data = self._answer()
+            data = self._answer(self._limit)
         except OSError:
             data = b""
+        except BaseException:
+            # Ctrl-C: an answer to come would be taken for that of another order
+            self._end()
+            raise
         if data is None:
             self._end()
             raise FMUError(f"gave no answer within {self._limit:g} s; raise time_limit= if it may take longer")
@@ -85,15 +96,15 @@ class Process:
                 self._process.wait(PATIENCE)
         self._end()
 
-    def _answer(self) -> bytes | None:
+    def _answer(self, limit: float) -> bytes | None:
         """The bytes of an answer, fewer where the process has ended; None where the time is over."""
         stream = _pipe(self._process.stdout)
         if hasattr(select, "poll"):
             waiting = select.poll()
             waiting.register(stream, select.POLLIN)
             # what follows the first byte of an answer is written already
-            return stream.read(self._form.reply_size) if waiting.poll(1000.0 * self._limit) else None
-        late = Timer(self._limit, self._process.kill)
+            return stream.read(self._form.reply_size) if waiting.poll(1000.0 * limit) else None
+        late = Timer(limit, self._process.kill)
         late.start()
         data = stream.read(self._form.reply_size)
         late.cancel()

@@ -35,6 +35,8 @@ def main(folder: str) -> None:
     Thread(target=_follow, args=(os.getppid(),), daemon=True).start()
     form = Format(len(job.inputs), len(job.outputs))
     instance: Instance | None = None
+    # from here on the time is that of the FMU
+    _send(answers, form.reply(Answer.DONE, [], ""))
     while (asked := form.read_request(requests)) is not None:
         try:
             instance = instance or _loaded(job)
@@ -43,8 +45,7 @@ def main(folder: str) -> None:
         except FailedCall as failed:
             said = instance.said if instance else ""
             outputs, answer, text = [], failed.answer, f"{failed.text}: {said}" if said else failed.text
-        answers.write(form.reply(answer, outputs, text))
-        answers.flush()
+        _send(answers, form.reply(answer, outputs, text))
         if asked.order is Order.END:
             break
     # what an FMU does when its library goes is its own affair
@@ -59,6 +60,11 @@ def _pipes() -> tuple[BinaryIO, BinaryIO]:
         os.dup2(nowhere, number)
     os.close(nowhere)
     return os.fdopen(requests, "rb"), os.fdopen(answers, "wb")
+
+
+def _send(answers: BinaryIO, data: bytes) -> None:
+    answers.write(data)
+    answers.flush()
 
 
 def _follow(parent: int) -> None:

@@ -189,6 +189,7 @@ class Simulator:
         try:
             return controller.value(self._time, readings)
         except SimulationError as error:
+            self._guests.renew()
             raise self._failed(SimulationError(str(error), self.run)) from error.__cause__
 
     # ------------------------------------------------------------------------------------------------------ setting
