@@ -167,8 +167,8 @@ def test_mistakes_of_a_model_file_are_told_with_their_lines(exported: Path, tmp_
         (text.replace("period = 0.01", "perod = 0.01"), "perod is an unknown key; did you mean 'period'?"),
         (text.replace("actuator.fmu", "actuato.fmu"), "it cannot be read: No such file"),
         (text.replace('fmu = "actuator"', 'fmu = "actuater"'), "is not an FMU of this model; did you mean 'actuator'?"),
-        (text.replace("valve.speed", "valve.sped"), "'valve.sped' is no output; did you mean 'valve.speed'?"),
-        (text.replace("torque_signal", "torque_sgnal"), "'command.torque_sgnal' is no input; did you mean"),
+        (text.replace("valve.speed", "valve.sped"), "'valve.sped' is not an output; did you mean 'valve.speed'?"),
+        (text.replace("torque_signal", "torque_sgnal"), "'command.torque_sgnal' is not an input; did you mean"),
     ):
         path.write_text(wrong)
         with pytest.raises(cw.ModelError) as raised:
@@ -195,9 +195,9 @@ def test_wrong_calls_are_told_at_once(exported: Path) -> None:
     told = str(raised.value)
     for words in ("period is '1 m'", "inputs: 'a' is 1", "parameters: 'b' is 'c'", "time_limit is 0", "say trust=True"):
         assert words in told
-    with pytest.raises(cw.FMUError, match=r"'command' is no input; inputs are command.torque_signal|did you mean"):
+    with pytest.raises(cw.FMUError, match=r"'command' is not an input; inputs are command.torque_signal|did you mean"):
         cw.FMU(exported, PERIOD, inputs={"command": "c1.slip"}, trust=True)
-    with pytest.raises(cw.FMUError, match=r"FMU 'actuator': 'valve.sped' is no output; did you mean 'valve.speed'"):
+    with pytest.raises(cw.FMUError, match=r"FMU 'actuator': 'valve.sped' is not an output; did you mean 'valve.speed'"):
         controller(exported)["valve.sped"]
     unknown = cw.FMU(exported, PERIOD, inputs={"command.torque_signal": "c1.slop"}, trust=True)
     with pytest.raises(cw.SimulationError, match=r"FMU 'actuator' reads 'command.torque_signal' from 'c1.slop': "):
@@ -248,7 +248,7 @@ def test_units_types_and_several_outputs_of_one_fmu(tmp_path: Path) -> None:
 def test_fmi_3_has_its_types_too(tmp_path: Path) -> None:
     fmu = cw.FMU(small(tmp_path / "s.fmu", "3.0"), 0.1, inputs={"u": "a.speed", "on": "a.speed"}, trust=True)
     assert fmu.outputs == ("y", "is on")
-    with pytest.raises(cw.FMUError, match=r"'many' is no single number, and only those can be exchanged"):
+    with pytest.raises(cw.FMUError, match=r"'many' is not a single number, and only those can be exchanged"):
         fmu["many"]
     d = cw.Driveline("three")
     d.shaft("a", inertia=1.0, speed=10.0)

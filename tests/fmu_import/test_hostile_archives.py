@@ -115,12 +115,12 @@ def test_heads_that_lie_do_not_let_a_bomb_pass(tmp_path: Path, monkeypatch: pyte
         (SOUND[:200], "its description is not XML"),
         (
             SOUND.replace(b'"small" c', b'"../../small" c'),
-            "its modelIdentifier is '../../small', which is no identifier",
+            "its modelIdentifier is '../../small', which cannot be the name of a library",
         ),
         (SOUND.replace(b'"2.0"', b'"1.0"'), "it is of FMI '1.0'; what can be run is 2.0 and 3.0"),
         (SOUND.replace(b"CoSimulation", b"ModelExchange"), "it is not for co-simulation"),
         (SOUND.replace(b'"7"', b'"-7"'), "its variable 'steps' has no valueReference"),
-        (SOUND.replace(b'"1e4"', b'"0"'), "its unit 'decibar' has a factor or an offset that is no number"),
+        (SOUND.replace(b'"1e4"', b'"0"'), "its unit 'decibar' has a factor or an offset that is not a number"),
     ],
     ids=["DOCTYPE", "encoding", "cut", "identifier", "version", "kind", "reference", "unit"],
 )
@@ -151,11 +151,11 @@ def test_what_is_no_archive_or_has_no_description_or_library_is_told(tmp_path: P
 
 
 def test_folders_are_for_their_owner_alone(tmp_path: Path) -> None:
-    from clutchwork.fmu_import.library import Job
+    from clutchwork.fmu_import.library import Assignment
     from clutchwork.fmu_import.process import Process
 
     path = made_of(tmp_path / "a.fmu", entry("resources/deep/a"))
-    process = Process(path, Job("", "x", "2.0", "a", "", [], [], []), 60.0)
+    process = Process(path, Assignment("", "x", "2.0", "a", "", [], [], []), 60.0)
     folder, *_ = (tmp_path / "temporary").iterdir()
     assert stat.S_IMODE(folder.stat().st_mode) == 0o700
     assert (folder / "fmu" / "resources" / "deep" / "a").read_bytes() == b"x"

@@ -175,6 +175,7 @@ def to_dict(model: Model, *, folder: str | Path | None = None, embed: bool = Fal
     elements = [writer.element(element) for element in model.elements]
     data["fmu"] = []
     if writer.fmus:
+        # loaded where a model has one
         from clutchwork.files.fmus import table
 
         data["fmu"] = [table(fmu, name, writer.folder) for fmu, name in writer.fmus.items()]

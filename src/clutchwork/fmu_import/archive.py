@@ -105,7 +105,7 @@ def _opened(path: Path) -> Iterator[tuple[ZipFile, Bytes]]:
 
 
 def refuse_entries(items: list[ZipInfo]) -> None:
-    """FMUError for entries that lead out of a folder, are no files, or are there twice."""
+    """FMUError for entries that lead out of a folder, are links or devices, or appear twice."""
     if len(items) > MOST_ENTRIES:
         raise FMUError(f"it has {len(items)} entries, more than {MOST_ENTRIES}")
     files, folders = set[str](), set[str]()

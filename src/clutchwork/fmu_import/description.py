@@ -25,10 +25,11 @@ TYPES = {
 IDENTIFIER = re.compile(r"[A-Za-z_][A-Za-z0-9_]*")
 MOST_REFERENCE = 2**32 - 1
 INPUT, PARAMETER, OUTPUT = "input", "parameter", "output"
+WORDS = {INPUT: "an input", PARAMETER: "a parameter", OUTPUT: "an output"}
 
 
 @dataclass(frozen=True)
-class Variable:
+class FMUVariable:
     """A variable of an FMU; a number of it times the scale is one in SI."""
 
     name: str
@@ -48,22 +49,26 @@ class Description:
     name: str  # of its model
     identifier: str  # of its library
     token: str
-    variables: dict[str, Variable]
+    variables: dict[str, FMUVariable]
 
-    def variable(self, name: str, wanted: str) -> Variable:
+    def variable(self, name: str, wanted: str) -> FMUVariable:
         """A variable that can be read as an output, or set as an input or a parameter; FMUError where none is that."""
         found = self.variables.get(name)
         fits = [one.name for one in self.variables.values() if one.type and _is(one, wanted)]
         if found is None or not _is(found, wanted):
-            what = "is a parameter that cannot be set" if found and found.causality == wanted else f"is no {wanted}"
+            what = (
+                "is a parameter that cannot be set"
+                if found and found.causality == wanted
+                else f"is not {WORDS[wanted]}"
+            )
             known = f"{wanted}s are {listed(fits)}" if fits else f"it has no {wanted}s"
             raise FMUError(f"{quote(name)} {what}{near(name, fits, known)}")
         if not found.type:
-            raise FMUError(f"{quote(name)} is no single number, and only those can be exchanged")
+            raise FMUError(f"{quote(name)} is not a single number, and only those can be exchanged")
         return found
 
 
-def _is(one: Variable, wanted: str) -> bool:
+def _is(one: FMUVariable, wanted: str) -> bool:
     # a number that is no output may be looked at too, and what no signal drives may keep a value
     if wanted == OUTPUT:
         return one.causality in (OUTPUT, "local")
@@ -96,14 +101,14 @@ def read(data: bytes) -> Description:
         raise FMUError("it is not for co-simulation: ask its maker for an FMU for co-simulation")
     identifier = run.get("modelIdentifier", "")
     if not IDENTIFIER.fullmatch(identifier):
-        raise FMUError(f"its modelIdentifier is {quote(identifier)}, which is no identifier")
+        raise FMUError(f"its modelIdentifier is {quote(identifier)}, which cannot be the name of a library")
     token = root.get("instantiationToken" if kept == "3.0" else "guid", "")
     units = dict(_units(root))
     made = {one.name: one for one in _variables(root, kept, units)}
     return Description(kept, root.get("modelName", identifier), identifier, token, made)
 
 
-def _variables(root: Element, version: str, units: dict[str, Scale]) -> Iterator[Variable]:
+def _variables(root: Element, version: str, units: dict[str, Scale]) -> Iterator[FMUVariable]:
     found = root.find("ModelVariables")
     types = _types(root)
     for item in () if found is None else found:
@@ -112,7 +117,7 @@ def _variables(root: Element, version: str, units: dict[str, Scale]) -> Iterator
         unit = "" if typed is None else typed.get("unit") or types.get(typed.get("declaredType", ""), "")
         scale = _relative(units.get(unit) or _by_name(unit), typed)
         causality = item.get("causality", "local")
-        yield Variable(item.get("name", ""), _reference(item), causality, kind, unit, scale, _settable(item, typed))
+        yield FMUVariable(item.get("name", ""), _reference(item), causality, kind, unit, scale, _settable(item, typed))
 
 
 def _reference(item: Element) -> int:
@@ -151,7 +156,7 @@ def _units(root: Element) -> Iterator[tuple[str, Scale]]:
         except ValueError:
             factor, zero = 0.0, 0.0
         if factor == 0.0 or not (isfinite(factor) and isfinite(zero)):
-            raise FMUError(f"its unit {quote(name)} has a factor or an offset that is no number")
+            raise FMUError(f"its unit {quote(name)} has a factor or an offset that is not a number")
         yield name, Scale(factor, zero)
 
 

@@ -9,7 +9,7 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
-from clutchwork.fmu_import.library import FailedCall, Job, Values, checked, function_of
+from clutchwork.fmu_import.library import Assignment, FailedCall, NumberAccess, checked, function_of
 from clutchwork.fmu_import.messages import Answer
 
 TYPES = {"Real": c.c_double, "Integer": c.c_int, "Boolean": c.c_int}
@@ -35,9 +35,9 @@ class Callbacks(c.Structure):
 class Instance2:
     """An instance, as `library.Instance` has it."""
 
-    def __init__(self, library: Any, job: Job) -> None:
+    def __init__(self, library: Any, job: Assignment) -> None:
         self.library, self.job, self.said = library, job, ""
-        self.values = Values(library, "fmi2", TYPES, counted=False)
+        self.values = NumberAccess(library, "fmi2", TYPES, counted=False)
         self.component: int | None = None
         self._callbacks = self._made_callbacks()
 

@@ -7,7 +7,7 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
-from clutchwork.fmu_import.library import FailedCall, Job, Values, checked, function_of
+from clutchwork.fmu_import.library import Assignment, FailedCall, NumberAccess, checked, function_of
 from clutchwork.fmu_import.messages import Answer
 
 TYPES: dict[str, Any] = {"Float64": c.c_double, "Float32": c.c_float, "Boolean": c.c_bool}
@@ -18,9 +18,9 @@ LOG = c.CFUNCTYPE(None, c.c_void_p, c.c_int, c.c_char_p, c.c_char_p)
 class Instance3:
     """An instance, as `library.Instance` has it; without event mode and early return."""
 
-    def __init__(self, library: Any, job: Job) -> None:
+    def __init__(self, library: Any, job: Assignment) -> None:
         self.library, self.job, self.said = library, job, ""
-        self.values = Values(library, "fmi3", TYPES, counted=True)
+        self.values = NumberAccess(library, "fmi3", TYPES, counted=True)
         self.instance: int | None = None
         self._log = LOG(self._heard)
 

@@ -15,8 +15,8 @@ from clutchwork.base.quote import quote
 from clutchwork.declare.calls import explained
 from clutchwork.declare.quantity import QuantityError, has_unit, in_si
 from clutchwork.fmu_import import archive
-from clutchwork.fmu_import.description import INPUT, OUTPUT, PARAMETER, Description, Variable, read
-from clutchwork.fmu_import.library import Job
+from clutchwork.fmu_import.description import INPUT, OUTPUT, PARAMETER, Description, FMUVariable, read
+from clutchwork.fmu_import.library import Assignment
 from clutchwork.fmu_import.output import Output
 from clutchwork.fmu_import.platforms import library_of
 
@@ -54,7 +54,7 @@ class FMU:
         {"slip": "c1.slip"}; parameters, numbers by name in the units of the FMU, also start values of inputs that
         nothing drives; trust, must be True, for a run executes the library; time_limit [s] for each of its steps and
         for its start; name in messages, that of the file by default. Values are in the SI units of the driveline, where
-        the FMU says its own. UseError for arguments that do not fit, FMUError for a file that is no such FMU.
+        the FMU says its own. UseError for arguments that do not fit, FMUError for any other file.
         """
         self.path = path_of("cw.FMU", path, "controller.fmu").absolute()
         self.name = name or self.path.stem
@@ -81,6 +81,7 @@ class FMU:
 
     def __getitem__(self, output: str) -> Sampled:
         """An output as a signal that sets an input of an element; FMUError with near names where there is none."""
+        # loaded where a signal is made
         from clutchwork.signals.sampled import Sampled
 
         try:
@@ -95,18 +96,18 @@ class FMU:
         known = self._description.variables.values()
         return tuple(one.name for one in known if one.causality == OUTPUT and one.type)
 
-    def variable(self, name: str) -> Variable:
+    def variable(self, name: str) -> FMUVariable:
         """A variable of it."""
         return self._description.variables[name]
 
-    def job(self, outputs: list[str]) -> Job:
+    def job(self, outputs: list[str]) -> Assignment:
         """What a run of it is, with some of its outputs; FMUError where the file is not what it was."""
         if self._read() != (self._description, self._library):
             raise FMUError(f"{self.path} is not the file any more that it was: make cw.FMU anew")
         made, of = self._description, self._description.variables
         given = [(of[one].reference, of[one].type, value) for one, value in self.parameters.items()]
         read_, wanted = ([(of[one].reference, of[one].type) for one in names] for names in (self.inputs, outputs))
-        return Job("", self._library, made.version, self.name, made.token, read_, wanted, given)
+        return Assignment("", self._library, made.version, self.name, made.token, read_, wanted, given)
 
     @cached_property
     def _key(self) -> tuple[Any, ...]:

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 from clutchwork.base.errors import FMUError
 from clutchwork.base.quote import quote
-from clutchwork.fmu_import.messages import Order
+from clutchwork.fmu_import.messages import Command
 from clutchwork.fmu_import.process import Process
 
 if TYPE_CHECKING:
@@ -35,10 +35,12 @@ class Guest:
     def outputs(self, time: float, readings: Mapping[str, Any]) -> dict[str, float]:
         """Outputs at an instant [s]: those of the step that ends there, from the inputs at its begin."""
         if time != self._time:
+            if self.process.ended:
+                raise self._failed("was interrupted before it had answered: begin anew", "")
             # all that an instant needs is read before anything is done
             given = [self._read(name, signal, time, readings) for name, signal in self.fmu.inputs.items()]
             if not self._outputs:
-                self._ask(Order.BEGIN, time, given, f"at its start at {time:.9g} s")
+                self._ask(Command.BEGIN, time, given, f"at its start at {time:.9g} s")
             else:
                 self._step(time)
             self._time, self._given = time, given
@@ -51,9 +53,9 @@ class Guest:
         if abs(time - begin - period) > ROUND_OFF * period:
             why = "all of its outputs were set from outside, or the run went to another time"
             raise self._failed(f"was not asked {when}, which is not one period of {period:g} s: {why}", "")
-        self._ask(Order.STEP, begin, self._given, when)
+        self._ask(Command.STEP, begin, self._given, when)
 
-    def _ask(self, order: Order, time: float, given: list[float], when: str) -> None:
+    def _ask(self, order: Command, time: float, given: list[float], when: str) -> None:
         try:
             found = self.process.ask(order, time, self.fmu.period, given)
         except FMUError as error:
@@ -72,7 +74,7 @@ class Guest:
         except KeyError as error:
             raise self._failed(f"reads {quote(name)} from {quote(signal)}: {error}", "") from None
         if isinstance(value, str):
-            raise self._failed(f"reads {quote(name)} from {quote(signal)}, which is a text: {quote(value)}", "")
+            raise self._failed(f"reads {quote(name)} from {quote(signal)}, which is {quote(value)}, not a number", "")
         scale = self.fmu.variable(name).scale
         number = (float(value) - scale.zero) / scale.factor
         if not isfinite(number):

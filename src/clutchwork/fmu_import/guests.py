@@ -44,7 +44,7 @@ class Guests:
         self._names.clear()
 
     def _value(self, output: Output, time: float, readings: Mapping[str, Any]) -> float:
-        fmu = output.fmu
+        fmu: FMU = output.fmu
         if fmu not in self._names:
             raise FMUError(f"FMU {quote(fmu.name)} has ended with its run: simulate again to go on")
         if fmu not in self._open:

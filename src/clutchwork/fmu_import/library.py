@@ -11,7 +11,7 @@ from clutchwork.fmu_import.messages import Answer
 OK, WARNING = 0, 1
 
 
-class Job(NamedTuple):
+class Assignment(NamedTuple):
     """What is to be run: paths, the FMU, and its variables as (reference, type)."""
 
     folder: str
@@ -51,7 +51,7 @@ class Instance(Protocol):
         """Terminate and free."""
 
 
-class Values:
+class NumberAccess:
     """Sets and gets numbers of any type, one call for each variable: inputs of the same type need not be together."""
 
     def __init__(self, library: Any, prefix: str, types: dict[str, Any], counted: bool) -> None:

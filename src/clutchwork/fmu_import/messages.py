@@ -11,7 +11,7 @@ from typing import BinaryIO, NamedTuple
 TEXT = 480
 
 
-class Order(IntEnum):
+class Command(IntEnum):
     """What a run wants."""
 
     BEGIN = 1  # instantiate and initialise at a time with inputs
@@ -35,7 +35,7 @@ class Answer(IntEnum):
 class Request(NamedTuple):
     """An order with time [s], length of the step [s] and values of the inputs."""
 
-    order: Order
+    order: Command
     time: float
     size: float
     inputs: tuple[float, ...]
@@ -62,7 +62,7 @@ class Format:
         """Bytes of an answer."""
         return self._reply.size
 
-    def request(self, order: Order, time: float, size: float, inputs: Sequence[float]) -> bytes:
+    def request(self, order: Command, time: float, size: float, inputs: Sequence[float]) -> bytes:
         """A request as bytes."""
         return self._request.pack(order, time, size, *inputs)
 
@@ -77,7 +77,7 @@ class Format:
         if len(data) < self._request.size:
             return None
         order, time, size, *inputs = self._request.unpack(data)
-        return Request(Order(order), time, size, tuple(inputs))
+        return Request(Command(order), time, size, tuple(inputs))
 
     def read_reply(self, data: bytes) -> Reply:
         """An answer."""

@@ -3,21 +3,18 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 from clutchwork.base.classes import dataclass
 from clutchwork.base.errors import FMUError
 from clutchwork.base.quote import quote
-
-if TYPE_CHECKING:
-    from clutchwork.fmu_import.fmu import FMU
 
 
 @dataclass(frozen=True)
 class Output:
     """An output of an FMU, as the function of a `Sampled`."""
 
-    fmu: FMU
+    fmu: Any  # whose file is loaded where somebody has one
     name: str
 
     def __call__(self, _time: float, _readings: Mapping[str, Any]) -> float:

@@ -18,8 +18,8 @@ from typing import BinaryIO
 
 from clutchwork.base.errors import FMUError
 from clutchwork.fmu_import.archive import unpack
-from clutchwork.fmu_import.library import Job
-from clutchwork.fmu_import.messages import Answer, Format, Order
+from clutchwork.fmu_import.library import Assignment
+from clutchwork.fmu_import.messages import Answer, Command, Format
 from clutchwork.fmu_import.worker import JOB
 
 WORKER = ("-I", "-m", "clutchwork.fmu_import.worker")
@@ -41,7 +41,7 @@ WORDS = {
 class Process:
     """The process of an FMU, from its start to `close`; it goes with this object."""
 
-    def __init__(self, path: Path, job: Job, time_limit: float) -> None:
+    def __init__(self, path: Path, job: Assignment, time_limit: float) -> None:
         """Unpack an FMU and start its process; `time_limit` [s] for each answer. FMUError says what is wrong."""
         self._form, self._limit = Format(len(job.inputs), len(job.outputs)), time_limit
         self._none = [0.0] * len(job.inputs)
@@ -61,10 +61,8 @@ class Process:
             self._end()
             raise FMUError("its process did not start: is clutchwork installed for this Python?")
 
-    def ask(self, order: Order, time: float, size: float, inputs: Sequence[float]) -> tuple[float, ...]:
+    def ask(self, order: Command, time: float, size: float, inputs: Sequence[float]) -> tuple[float, ...]:
         """Let the FMU do something; its outputs. FMUError says how it failed."""
-        if not self._end.alive:
-            raise FMUError("was interrupted before it had answered: begin anew")
         told = self._form.request(order, time, size, inputs)
         try:
             _pipe(self._process.stdin).write(told)
@@ -86,12 +84,17 @@ class Process:
             raise FMUError(f"{WORDS[reply.answer]} ({reply.text})")
         return reply.outputs
 
+    @property
+    def ended(self) -> bool:
+        """Whether it was ended."""
+        return not self._end.alive
+
     def close(self) -> None:
         """Let it free itself, end the process and remove its folder."""
         if self._end.alive and self._process.poll() is None:
             # all that it was asked for it has answered: how it ends is of no account
             with suppress(OSError, subprocess.TimeoutExpired):
-                _pipe(self._process.stdin).write(self._form.request(Order.END, 0.0, 0.0, self._none))
+                _pipe(self._process.stdin).write(self._form.request(Command.END, 0.0, 0.0, self._none))
                 _pipe(self._process.stdin).close()
                 self._process.wait(PATIENCE)
         self._end()

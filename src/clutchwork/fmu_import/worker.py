@@ -20,8 +20,8 @@ from typing import BinaryIO
 
 from clutchwork.fmu_import.fmi2 import Instance2
 from clutchwork.fmu_import.fmi3 import Instance3
-from clutchwork.fmu_import.library import FailedCall, Instance, Job
-from clutchwork.fmu_import.messages import Answer, Format, Order, Request
+from clutchwork.fmu_import.library import Assignment, FailedCall, Instance
+from clutchwork.fmu_import.messages import Answer, Command, Format, Request
 
 JOB = "job.json"
 
@@ -29,7 +29,7 @@ JOB = "job.json"
 def main(folder: str) -> None:
     """Answer requests; nothing that an FMU prints gets to anybody."""
     requests, answers = _pipes()
-    job = Job(**json.loads(Path(folder, JOB).read_text(encoding="utf-8")))
+    job = Assignment(**json.loads(Path(folder, JOB).read_text(encoding="utf-8")))
     # Ctrl-C is for the run
     signal.signal(signal.SIGINT, signal.SIG_IGN)
     Thread(target=_follow, args=(os.getppid(),), daemon=True).start()
@@ -46,7 +46,7 @@ def main(folder: str) -> None:
             said = instance.said if instance else ""
             outputs, answer, text = [], failed.answer, f"{failed.text}: {said}" if said else failed.text
         _send(answers, form.reply(answer, outputs, text))
-        if asked.order is Order.END:
+        if asked.order is Command.END:
             break
     # what an FMU does when its library goes is its own affair
     os._exit(0)
@@ -74,7 +74,7 @@ def _follow(parent: int) -> None:
     os._exit(1)
 
 
-def _loaded(job: Job) -> Instance:
+def _loaded(job: Assignment) -> Instance:
     path = str(Path(job.folder, job.library))
     try:
         library = ctypes.CDLL(path)
@@ -87,10 +87,10 @@ def _loaded(job: Job) -> Instance:
 def _do(instance: Instance, asked: Request) -> list[float]:
     """Do what is asked; the outputs then."""
     instance.said = ""
-    if asked.order is Order.END:
+    if asked.order is Command.END:
         instance.end()
         return []
-    if asked.order is Order.BEGIN:
+    if asked.order is Command.BEGIN:
         instance.begin(asked.time, asked.inputs)
     else:
         instance.step(asked.time, asked.size, asked.inputs)

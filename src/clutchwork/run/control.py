@@ -9,9 +9,6 @@ from typing import TYPE_CHECKING, Any
 
 from clutchwork.base.classes import dataclass
 from clutchwork.base.errors import FMUError
-from clutchwork.fmu_import.guests import Guests
-from clutchwork.fmu_import.output import Output
-from clutchwork.results.state import StateError
 from clutchwork.run.trajectory import SimulationError
 
 if TYPE_CHECKING:
@@ -19,6 +16,7 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from clutchwork.assembly.records import Input
+    from clutchwork.fmu_import.guests import Guests
     from clutchwork.results.channels import Channels
     from clutchwork.results.external_settings import Held
 
@@ -61,13 +59,23 @@ def controllers(
     )
 
 
-def guests_of(inputs: Sequence[Input]) -> Guests:
-    """The FMUs of other people that a run of a System needs, none of them started yet."""
-    return Guests(sampling.function for item in inputs if (sampling := item.signal.sampling()) is not None)
+def guests_of(inputs: Sequence[Input]) -> Guests | None:
+    """The FMUs of other people that a run of a System needs, none of them started yet; None where no function is."""
+    functions = [sampling.function for item in inputs if (sampling := item.signal.sampling()) is not None]
+    if not functions:
+        return None
+    # loaded where functions set inputs
+    from clutchwork.fmu_import.guests import Guests
+
+    return Guests(functions)
 
 
 def refuse_guests(inputs: Sequence[Input], held: Container[str] = ()) -> None:
     """StateError where FMUs set inputs of a System: no state of a run holds theirs."""
+    # loaded where a run goes on from a state
+    from clutchwork.fmu_import.output import Output
+    from clutchwork.results.state import StateError
+
     names = [one.name for one in controllers(inputs, held) if isinstance(one.function, Output)]
     if names:
         why = "which begins at the start of a run, and no state of a run holds its own"
@@ -86,7 +94,6 @@ class Control:
     log: dict[float, Settings] = field(default_factory=dict)
     held: Held = field(default_factory=dict)  # from outside, since before the run
     changed: Mapping[str, Any] = field(default_factory=dict)
-    guests: Guests = field(default_factory=Guests)  # FMUs of other people
     first: NDArray[np.float64] | None = None  # the row that controllers see where a run goes on from a state
 
     def act(self, run: Any, time: float, number: int) -> bool:

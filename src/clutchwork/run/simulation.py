@@ -129,8 +129,8 @@ def simulate(
         refuse_guests(system.inputs, held)
     guests = guests_of(system.inputs)
     asked, first = controllers(system.inputs, held, guests), start.before if start else None
-    control = Control(asked, partial(_channels, system), held=held, changed=changed, guests=guests, first=first)
-    with _followed(progress, chosen.t_start, end) as told, closing(guests):
+    control = Control(asked, partial(_channels, system), held=held, changed=changed, first=first)
+    with _followed(progress, chosen.t_start, end) as told, closing(guests) if guests else nullcontext():
         run = trajectory(Job(system, end, chosen, control, start), told)
     if any(event.cause == "fault" for event in run.events):
         from clutchwork.run.failure import report_faults

@@ -185,11 +185,16 @@ class Simulator:
             self._run.set_input(*numbers[0])
             self._done("control", one.name, None, numbers)
 
+    def _renew_guests(self) -> None:
+        """FMUs begin anew where they are asked again."""
+        if self._guests is not None:
+            self._guests.renew()
+
     def _asked(self, controller: Controller, readings: Readings) -> float:
         try:
             return controller.value(self._time, readings)
         except SimulationError as error:
-            self._guests.renew()
+            self._renew_guests()
             raise self._failed(SimulationError(str(error), self.run)) from error.__cause__
 
     # ------------------------------------------------------------------------------------------------------ setting
@@ -375,7 +380,7 @@ class Simulator:
 
     def _begin(self, here: State | None, start: State | None) -> None:
         """Forget the past; `start` is what the run is repeated from."""
-        self._guests.renew()
+        self._renew_guests()
         self._past = Past(self._system, start, self._run.time, self._outside.begin(here))
         self._here(here)
 
