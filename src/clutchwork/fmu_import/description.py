@@ -56,11 +56,8 @@ class Description:
         found = self.variables.get(name)
         fits = [one.name for one in self.variables.values() if one.type and _is(one, wanted)]
         if found is None or not _is(found, wanted):
-            what = (
-                "is a parameter that cannot be set"
-                if found and found.causality == wanted
-                else f"is not {WORDS[wanted]}"
-            )
+            fixed = found is not None and found.causality == wanted
+            what = "is a parameter that cannot be set" if fixed else f"is not {WORDS[wanted]}"
             known = f"{wanted}s are {listed(fits)}" if fits else f"it has no {wanted}s"
             raise FMUError(f"{quote(name)} {what}{near(name, fits, known)}")
         if not found.type:

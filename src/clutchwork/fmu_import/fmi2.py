@@ -35,8 +35,8 @@ class Callbacks(c.Structure):
 class Instance2:
     """An instance, as `library.Instance` has it."""
 
-    def __init__(self, library: Any, job: Assignment) -> None:
-        self.library, self.job, self.said = library, job, ""
+    def __init__(self, library: Any, assigned: Assignment) -> None:
+        self.library, self.assigned, self.said = library, assigned, ""
         self.values = NumberAccess(library, "fmi2", TYPES, counted=False)
         self.component: int | None = None
         self._callbacks = self._made_callbacks()
@@ -45,12 +45,12 @@ class Instance2:
         """Instantiate and initialise."""
         make = function_of(self.library, "fmi2Instantiate")
         make.restype = c.c_void_p
-        where = Path(self.job.folder, "resources").as_uri().encode()
-        name, token = self.job.name.encode(), self.job.token.encode()
+        where = Path(self.assigned.folder, "resources").as_uri().encode()
+        name, token = self.assigned.name.encode(), self.assigned.token.encode()
         self.component = make(name, CO_SIMULATION, token, where, c.byref(self._callbacks), 0, 0)
         if not self.component:
             raise FailedCall(Answer.NO_INSTANCE, "fmi2Instantiate")
-        for reference, kind, value in self.job.parameters:
+        for reference, kind, value in self.assigned.parameters:
             self.values.set(self.component, reference, kind, value)
         self._call("fmi2SetupExperiment", 0, c.c_double(0.0), c.c_double(time), 0, c.c_double(0.0))
         self._call("fmi2EnterInitializationMode")
@@ -69,7 +69,7 @@ class Instance2:
 
     def outputs(self) -> list[float]:
         """Values of the outputs."""
-        return [self.values.get(self.component, *one) for one in self.job.outputs]
+        return [self.values.get(self.component, *one) for one in self.assigned.outputs]
 
     def end(self) -> None:
         """Terminate and free."""
@@ -83,7 +83,7 @@ class Instance2:
         return answered and bool(known.value)
 
     def _set(self, inputs: Sequence[float]) -> None:
-        for (reference, kind), value in zip(self.job.inputs, inputs, strict=True):
+        for (reference, kind), value in zip(self.assigned.inputs, inputs, strict=True):
             self.values.set(self.component, reference, kind, value)
 
     def _call(self, name: str, *given: Any) -> None:

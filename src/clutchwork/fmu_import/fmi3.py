@@ -18,8 +18,8 @@ LOG = c.CFUNCTYPE(None, c.c_void_p, c.c_int, c.c_char_p, c.c_char_p)
 class Instance3:
     """An instance, as `library.Instance` has it; without event mode and early return."""
 
-    def __init__(self, library: Any, job: Assignment) -> None:
-        self.library, self.job, self.said = library, job, ""
+    def __init__(self, library: Any, assigned: Assignment) -> None:
+        self.library, self.assigned, self.said = library, assigned, ""
         self.values = NumberAccess(library, "fmi3", TYPES, counted=True)
         self.instance: int | None = None
         self._log = LOG(self._heard)
@@ -29,11 +29,11 @@ class Instance3:
         make = function_of(self.library, "fmi3InstantiateCoSimulation")
         make.restype = c.c_void_p
         # a path that ends in a separator, not a URI
-        where = str(Path(self.job.folder, "resources")) + "/"
+        where = str(Path(self.assigned.folder, "resources")) + "/"
         no = c.c_bool(False)
         self.instance = make(
-            self.job.name.encode(),
-            self.job.token.encode(),
+            self.assigned.name.encode(),
+            self.assigned.token.encode(),
             where.encode(),
             *(no, no, no, no),
             None,
@@ -44,7 +44,7 @@ class Instance3:
         )
         if not self.instance:
             raise FailedCall(Answer.NO_INSTANCE, "fmi3InstantiateCoSimulation")
-        for reference, kind, value in self.job.parameters:
+        for reference, kind, value in self.assigned.parameters:
             self.values.set(self.instance, reference, kind, value)
         self._call("fmi3EnterInitializationMode", no, c.c_double(0.0), c.c_double(time), no, c.c_double(0.0))
         self._set(inputs)
@@ -63,7 +63,7 @@ class Instance3:
 
     def outputs(self) -> list[float]:
         """Values of the outputs."""
-        return [self.values.get(self.instance, *one) for one in self.job.outputs]
+        return [self.values.get(self.instance, *one) for one in self.assigned.outputs]
 
     def end(self) -> None:
         """Terminate and free."""
@@ -71,7 +71,7 @@ class Instance3:
         function_of(self.library, "fmi3FreeInstance")(c.c_void_p(self.instance))
 
     def _set(self, inputs: Sequence[float]) -> None:
-        for (reference, kind), value in zip(self.job.inputs, inputs, strict=True):
+        for (reference, kind), value in zip(self.assigned.inputs, inputs, strict=True):
             self.values.set(self.instance, reference, kind, value)
 
     def _call(self, name: str, *given: Any) -> None:

@@ -100,7 +100,7 @@ class FMU:
         """A variable of it."""
         return self._description.variables[name]
 
-    def job(self, outputs: list[str]) -> Assignment:
+    def assignment(self, outputs: list[str]) -> Assignment:
         """What a run of it is, with some of its outputs; FMUError where the file is not what it was."""
         if self._read() != (self._description, self._library):
             raise FMUError(f"{self.path} is not the file any more that it was: make cw.FMU anew")

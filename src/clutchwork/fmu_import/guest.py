@@ -28,7 +28,7 @@ class Guest:
         self._given: list[float] = []  # inputs read there
         self._outputs: dict[str, float] = {}
         try:
-            self.process = Process(fmu.path, fmu.job(names), fmu.time_limit)
+            self.process = Process(fmu.path, fmu.assignment(names), fmu.time_limit)
         except FMUError as error:
             raise FMUError(f"FMU {quote(fmu.name)}: {error}") from None
 

@@ -41,15 +41,17 @@ WORDS = {
 class Process:
     """The process of an FMU, from its start to `close`; it goes with this object."""
 
-    def __init__(self, path: Path, job: Assignment, time_limit: float) -> None:
+    def __init__(self, path: Path, assigned: Assignment, time_limit: float) -> None:
         """Unpack an FMU and start its process; `time_limit` [s] for each answer. FMUError says what is wrong."""
-        self._form, self._limit = Format(len(job.inputs), len(job.outputs)), time_limit
-        self._none = [0.0] * len(job.inputs)
+        self._form, self._limit = Format(len(assigned.inputs), len(assigned.outputs)), time_limit
+        self._none = [0.0] * len(assigned.inputs)
         # of mode 0700
         folder = mkdtemp(prefix="clutchwork-fmu-")
         try:
             unpack(path, Path(folder, "fmu"))
-            Path(folder, JOB).write_text(json.dumps(job._replace(folder=str(Path(folder, "fmu")))._asdict()), "utf-8")
+            Path(folder, JOB).write_text(
+                json.dumps(assigned._replace(folder=str(Path(folder, "fmu")))._asdict()), "utf-8"
+            )
             self._process = subprocess.Popen(  # noqa: S603, this Python
                 [sys.executable, *WORKER, folder], stdin=subprocess.PIPE, stdout=subprocess.PIPE, cwd=folder
             )

@@ -29,17 +29,17 @@ JOB = "job.json"
 def main(folder: str) -> None:
     """Answer requests; nothing that an FMU prints gets to anybody."""
     requests, answers = _pipes()
-    job = Assignment(**json.loads(Path(folder, JOB).read_text(encoding="utf-8")))
+    assigned = Assignment(**json.loads(Path(folder, JOB).read_text(encoding="utf-8")))
     # Ctrl-C is for the run
     signal.signal(signal.SIGINT, signal.SIG_IGN)
     Thread(target=_follow, args=(os.getppid(),), daemon=True).start()
-    form = Format(len(job.inputs), len(job.outputs))
+    form = Format(len(assigned.inputs), len(assigned.outputs))
     instance: Instance | None = None
     # from here on the time is that of the FMU
     _send(answers, form.reply(Answer.DONE, [], ""))
     while (asked := form.read_request(requests)) is not None:
         try:
-            instance = instance or _loaded(job)
+            instance = instance or _loaded(assigned)
             outputs = _do(instance, asked)
             answer, text = Answer.DONE, ""
         except FailedCall as failed:
@@ -74,14 +74,14 @@ def _follow(parent: int) -> None:
     os._exit(1)
 
 
-def _loaded(job: Assignment) -> Instance:
-    path = str(Path(job.folder, job.library))
+def _loaded(assigned: Assignment) -> Instance:
+    path = str(Path(assigned.folder, assigned.library))
     try:
         library = ctypes.CDLL(path)
     except OSError as error:
         # the path is one of a moment
-        raise FailedCall(Answer.NO_LIBRARY, str(error).replace(job.folder, "")) from None
-    return (Instance3 if job.version == "3.0" else Instance2)(library, job)
+        raise FailedCall(Answer.NO_LIBRARY, str(error).replace(assigned.folder, "")) from None
+    return (Instance3 if assigned.version == "3.0" else Instance2)(library, assigned)
 
 
 def _do(instance: Instance, asked: Request) -> list[float]:
