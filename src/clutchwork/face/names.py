@@ -47,6 +47,7 @@ NAMES = {
     "environment": "learn.environment",
     "export_c": "codegen",
     "export_fmu": "fmu",
+    "export_ssp": "ssp",
     "load_run": "run.saved",
     "OutputWarning": "sweeps.result",
     "Sweep": "sweeps.result",
