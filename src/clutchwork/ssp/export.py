@@ -16,7 +16,7 @@ from clutchwork.declare.calls import explained
 from clutchwork.fmu import archive
 from clutchwork.fmu_import.archive import description_of
 from clutchwork.fmu_import.description import INPUT, OUTPUT, PARAMETER, Description, read
-from clutchwork.ssp.structure import PARAMETERS, End, Parameter, Structure, parameter_set, powers, structure
+from clutchwork.ssp.structure import PARAMETERS, Connector, Package, ParameterValue, parameter_set, powers, structure
 
 # the name of an element is the first word of what stands in a connection
 NAME = re.compile(r"[A-Za-z_][A-Za-z0-9_]*")
@@ -58,7 +58,7 @@ def export_ssp(
     values = list(_parameters(read_, parameters or {}, problems))
     if problems:
         raise UseError(CALL, problems)
-    made = Structure(name or where.stem, _tool(), read_, ends, values, float(t_end))
+    made = Package(name or where.stem, _tool(), read_, ends, values, float(t_end))
     entries = {"SystemStructure.ssd": structure(made)}
     entries |= {f"resources/{key}.fmu": one.read_bytes() for key, one in paths.items()}
     return archive.write(where, entries | ({PARAMETERS: parameter_set(made)} if values else {}))
@@ -78,9 +78,11 @@ def _description(name: str, path: Path) -> Description:
     return made
 
 
-def _connections(fmus: Mapping[str, Description], given: Any, problems: list[str]) -> Iterable[tuple[End, End]]:
+def _connections(
+    fmus: Mapping[str, Description], given: Any, problems: list[str]
+) -> Iterable[tuple[Connector, Connector]]:
     """The connections that fit; what does not is a problem."""
-    driven: dict[End, str] = {}
+    driven: dict[Connector, str] = {}
     for pair in given:
         if not isinstance(pair, list | tuple) or len(pair) != 2:
             problems.append(f"{quote(pair)} is not a connection: give ('tcu.pressure', 'car.c1.pressure')")
@@ -100,16 +102,18 @@ def _connections(fmus: Mapping[str, Description], given: Any, problems: list[str
             yield start, end
 
 
-def _parameters(fmus: Mapping[str, Description], given: Mapping[str, Any], problems: list[str]) -> Iterable[Parameter]:
+def _parameters(
+    fmus: Mapping[str, Description], given: Mapping[str, Any], problems: list[str]
+) -> Iterable[ParameterValue]:
     for name, value in given.items():
         end = _end(fmus, name, PARAMETER, problems)
         if not isinstance(value, Real) or not isfinite(value):
             problems.append(f"{name} is {quote(value)}: give a number")
         elif end is not None:
-            yield Parameter(end, float(value))
+            yield ParameterValue(end, float(value))
 
 
-def _end(fmus: Mapping[str, Description], name: Any, kind: str, problems: list[str]) -> End | None:
+def _end(fmus: Mapping[str, Description], name: Any, kind: str, problems: list[str]) -> Connector | None:
     """An element and its variable, such as car and c1.pressure."""
     element, dot, connector = name.partition(".") if isinstance(name, str) else ("", "", "")
     if element not in fmus or not dot:
@@ -121,7 +125,7 @@ def _end(fmus: Mapping[str, Description], name: Any, kind: str, problems: list[s
     except FMUError as error:
         problems.append(f"{element}: {error}")
         return None
-    return End(element, connector)
+    return Connector(element, connector)
 
 
 def _tool() -> str:

@@ -18,32 +18,32 @@ BASES = ("kg", "m", "s", "rad", "K", "A")
 FMU_TYPE = "application/x-fmu-sharedlibrary"
 
 
-class End(NamedTuple):
+class Connector(NamedTuple):
     """An end of a connection: an FMU and one of its variables."""
 
     element: str
     connector: str
 
 
-class Parameter(NamedTuple):
+class ParameterValue(NamedTuple):
     """A value of a parameter of an FMU."""
 
-    end: End
+    end: Connector
     value: float
 
 
-class Structure(NamedTuple):
+class Package(NamedTuple):
     """What a package is made of."""
 
     name: str
     tool: str
     fmus: Mapping[str, Description]
-    connections: Sequence[tuple[End, End]]
-    parameters: Sequence[Parameter]
+    connections: Sequence[tuple[Connector, Connector]]
+    parameters: Sequence[ParameterValue]
     t_end: float  # s
 
 
-def structure(made: Structure) -> bytes:
+def structure(made: Package) -> bytes:
     """SystemStructure.ssd."""
     root = _root("ssd:SystemStructureDescription", made.name, made.tool, "ssc", "ssd")
     system = SubElement(root, "ssd:System", name=made.name)
@@ -57,8 +57,8 @@ def structure(made: Structure) -> bytes:
         component.set("implementation", "CoSimulation")
         connectors = SubElement(component, "ssd:Connectors")
         for one in fmu.variables.values():
-            kind = "parameter" if End(name, one.name) in given else one.causality
-            if one.type and (kind in (INPUT, OUTPUT) or End(name, one.name) in given):
+            kind = "parameter" if Connector(name, one.name) in given else one.causality
+            if one.type and (kind in (INPUT, OUTPUT) or Connector(name, one.name) in given):
                 connector = SubElement(connectors, "ssd:Connector", name=one.name, kind=kind)
                 SubElement(connector, f"ssc:{one.type}", _unit(one))
     if made.connections:
@@ -77,7 +77,7 @@ def structure(made: Structure) -> bytes:
     return _text(root)
 
 
-def parameter_set(made: Structure) -> bytes:
+def parameter_set(made: Package) -> bytes:
     """The values of parameters, by the names of FMU and variable."""
     root = _root("ssv:ParameterSet", f"parameters of {made.name}", made.tool, "ssc", "ssv")
     values = SubElement(root, "ssv:Parameters")
