@@ -167,6 +167,10 @@ def test_mistakes_of_a_model_file_are_told_with_their_lines(exported: Path, tmp_
         (text.replace("period = 0.01", "perod = 0.01"), "perod is an unknown key; did you mean 'period'?"),
         (text.replace("actuator.fmu", "actuato.fmu"), "it cannot be read: No such file"),
         (text.replace('fmu = "actuator"', 'fmu = "actuater"'), "is not an FMU of this model; did you mean 'actuator'?"),
+        (text.replace('output = "valve.speed"', "output = [1]"), "[1] is not an output; outputs are"),
+        (text.replace('"c1.slip"', "3"), "inputs: 'command.torque_signal' is 3: give names of results"),
+        (text.replace('path = "actuator.fmu"', "path = 7"), "path = 7: must be a string"),
+        (text.replace("period = 0.01\n", ""), "period is missing"),
         (text.replace("valve.speed", "valve.sped"), "'valve.sped' is not an output; did you mean 'valve.speed'?"),
         (text.replace("torque_signal", "torque_sgnal"), "'command.torque_sgnal' is not an input; did you mean"),
     ):

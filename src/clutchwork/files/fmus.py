@@ -11,6 +11,7 @@ from clutchwork.base.errors import FMUError, Problem, UseError, near
 from clutchwork.base.quote import quote
 from clutchwork.fmu_import.fmu import FMU
 
+# what says where it is, then what it is told
 KEYS = ("name", "path", "period", "inputs", "parameters", "time_limit")
 UNTRUSTED = "runs a library of another program with all that you may do"
 
@@ -33,9 +34,9 @@ def fmu(entry: Mapping[str, Any], name: str, folder: str, *, trust: bool) -> FMU
         problems.append(Problem(path, "", UNTRUSTED, remedy=remedy))
     if problems:
         return problems
-    given = {key: value for key, value in entry.items() if key in KEYS and key != "path"}
+    given = {key: value for key, value in entry.items() if key in KEYS[2:]}
     try:
-        return FMU(Path(folder, entry["path"]), trust=True, **given)
+        return FMU(Path(folder, entry["path"]), trust=True, name=name, **given)
     except UseError as error:
         return [Problem(path, "", fault) for fault in error.problems]
     except FMUError as error:

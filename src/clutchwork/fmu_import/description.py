@@ -53,7 +53,7 @@ class Description:
 
     def variable(self, name: str, wanted: str) -> FMUVariable:
         """A variable that can be read as an output, or set as an input or a parameter; FMUError where none is that."""
-        found = self.variables.get(name)
+        found = self.variables.get(name) if isinstance(name, str) else None
         fits = [one.name for one in self.variables.values() if one.type and _is(one, wanted)]
         if found is None or not _is(found, wanted):
             fixed = found is not None and found.causality == wanted

@@ -14,6 +14,7 @@ import os
 import signal
 import sys
 from pathlib import Path
+from shutil import rmtree
 from threading import Thread
 from time import sleep
 from typing import BinaryIO
@@ -32,7 +33,7 @@ def main(folder: str) -> None:
     assigned = Assignment(**json.loads(Path(folder, JOB).read_text(encoding="utf-8")))
     # Ctrl-C is for the run
     signal.signal(signal.SIGINT, signal.SIG_IGN)
-    Thread(target=_follow, args=(os.getppid(),), daemon=True).start()
+    Thread(target=_follow, args=(os.getppid(), folder), daemon=True).start()
     form = Format(len(assigned.inputs), len(assigned.outputs))
     instance: Instance | None = None
     # from here on the time is that of the FMU
@@ -48,6 +49,9 @@ def main(folder: str) -> None:
         _send(answers, form.reply(answer, outputs, text))
         if asked.order is Command.END:
             break
+    else:
+        # nobody is there any more who would
+        rmtree(folder, ignore_errors=True)
     # what an FMU does when its library goes is its own affair
     os._exit(0)
 
@@ -67,10 +71,11 @@ def _send(answers: BinaryIO, data: bytes) -> None:
     answers.flush()
 
 
-def _follow(parent: int) -> None:
-    """End with the process of the run, also while the FMU is busy."""
+def _follow(parent: int, folder: str) -> None:
+    """End with the process of the run, also while the FMU is busy, and leave nothing."""
     while os.getppid() == parent:
         sleep(1.0)
+    rmtree(folder, ignore_errors=True)
     os._exit(1)
 
 
