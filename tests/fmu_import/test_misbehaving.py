@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import subprocess
 import sys
 from pathlib import Path
@@ -93,6 +94,25 @@ def test_a_library_that_is_none_is_told(tmp_path: Path, monkeypatch: pytest.Monk
     fmu = cw.FMU(small(tmp_path / "text.fmu"), PERIOD, trust=True)
     with pytest.raises(cw.SimulationError, match=r"FMU 'text' cannot be loaded .*small.so: .* at its start at 0 s"):
         driven(fmu["y"]).simulate(1.0)
+
+
+def test_the_command_line_reports_it(path: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    from clutchwork.command.main import main
+
+    fmu = cw.FMU(path, PERIOD, parameters={"mode": STEP + 1, "when": 3, "bias": 1.0}, trust=True)
+    driven(fmu["y"]).save(tmp_path / "model.toml")
+    words = f"FMU 'valve' crashed (SIGSEGV) {IN_STEP}"
+    assert main(["run", str(tmp_path / "model.toml"), "--trust", "--t-end", "1", "--json"]) == 1
+    said = capsys.readouterr()
+    assert said.err == f"clutchwork: {words}\n"
+    told = json.loads(said.out)
+    assert (told["status"], told["message"]) == ("failed", words)
+    assert told["time_s"] == pytest.approx(0.3)
+    # with nothing computed yet, too
+    fmu = cw.FMU(path, PERIOD, parameters={"mode": ENTER + 1}, trust=True)
+    driven(fmu["y"]).save(tmp_path / "model.toml")
+    assert main(["run", str(tmp_path / "model.toml"), "--trust", "--t-end", "1"]) == 1
+    assert capsys.readouterr().err == f"clutchwork: FMU 'valve' crashed (SIGSEGV) {AT_START}\n"
 
 
 @pytest.mark.parametrize("mode", [END + 1, END + 2, END + 3, END + 4], ids=["crash", "exit", "hang", "error"])
