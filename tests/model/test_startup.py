@@ -24,7 +24,7 @@ SIMULATE = {
     "run.trajectory",
 }
 # rooms with a command of their own
-ROOMS = ("codegen", "diagrams", "fit", "fmu", "linear", "page", "rig", "schematic", "sweeps")
+ROOMS = ("codegen", "diagrams", "fit", "fmu", "linear", "page", "rig", "schematic", "ssp", "sweeps")
 HELP = IMPORT | {
     *("base.extras", "base.paths", "base.progress", "base.shell", "base.writing"),
     *("command", "command.check", "command.completion", "command.main", "command.models", "command.new"),

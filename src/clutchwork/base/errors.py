@@ -134,6 +134,10 @@ class FileError(ClutchworkError, ValueError):
         return type(self), (self.problems,)
 
 
+class FMUError(ClutchworkError, ValueError):
+    """An FMU of other people that cannot be read, or that fails in a run, with its name and the instant."""
+
+
 # comparing takes time in proportion to the product of both
 MOST_COMPARED = 500
 

@@ -8,7 +8,7 @@ from typing import Any
 
 from clutchwork.base.plural import columns
 from clutchwork.base.shell import DONE, add_command, add_json, add_model, tell, tell_json
-from clutchwork.command.models import add_set, system_of
+from clutchwork.command.models import add_set, add_trust, system_of
 
 EXAMPLES = (
     ("clutchwork check model.toml", "all mistakes at once, or what the model has and the ratios of its gears"),
@@ -24,6 +24,7 @@ def add_commands(commands: Any) -> None:
     )
     add_model(check)
     add_set(check)
+    add_trust(check)
     check.add_argument("--names", action="store_true", help="list what --set and --vary may change, with its value")
     check.add_argument("--signals", action="store_true", help="list the signals of a run, with their units")
     check.add_argument("--ratio", metavar="A/B", help="shafts whose speed ratio is reported; default: drive and load")
@@ -35,7 +36,7 @@ def check_command(asked: argparse.Namespace) -> int:
     from clutchwork.command import report
     from clutchwork.command.choose import chosen_shafts
 
-    system = system_of(Path(asked.model), asked.set)
+    system = system_of(Path(asked.model), asked.set, trust=asked.trust)
     shafts = chosen_shafts(system, asked.ratio)
     names = report.changeable_values(system) if asked.names else {}
     units = report.signal_units(system) if asked.signals else {}

@@ -33,12 +33,13 @@ from clutchwork.linear import command as linear
 from clutchwork.page import command as page
 from clutchwork.rig import command as rig
 from clutchwork.schematic import command as schematic
+from clutchwork.ssp import command as ssp
 from clutchwork.sweeps import command as sweeps
 
 __all__ = ["EXIT_CODES", "INTERRUPTED", "STOPPED", "main", "parser"]
 
 # those of rooms, each in its command.py
-ROOMS = (schematic, diagrams, sweeps, linear, rig, fit, codegen, fmu, page)
+ROOMS = (schematic, diagrams, sweeps, linear, rig, fit, codegen, fmu, ssp, page)
 ABOUT = "Simulates drivelines with clutches and brakes: engagements, launches, gear shifts."
 EXAMPLES = (
     ("clutchwork demo", "see what it does: a gearbox launches and shifts"),

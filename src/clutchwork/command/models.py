@@ -26,7 +26,16 @@ def add_set(parser: Any) -> None:
     )
 
 
-def system_of(path: Path, settings: Sequence[str] = ()) -> System:
+def add_trust(parser: Any) -> None:
+    """Add the leave to run libraries of other programs."""
+    parser.add_argument(
+        "--trust",
+        action="store_true",
+        help="the model may have FMUs, [[fmu]], whose libraries run with all that you may do",
+    )
+
+
+def system_of(path: Path, settings: Sequence[str] = (), *, trust: bool = False) -> System:
     """The system of a model file with other values; what it is warned of goes to standard error."""
     from clutchwork.declare.wording import words_of_files
     from clutchwork.driveline.driveline import Driveline
@@ -34,7 +43,7 @@ def system_of(path: Path, settings: Sequence[str] = ()) -> System:
 
     with warnings.catch_warnings(), words_of_files():
         warnings.simplefilter("ignore", ModelWarning)
-        system = Driveline.load(path).assemble()
+        system = Driveline.load(path, trust=trust).assemble()
         if settings and system.source is not None:
             system = system.changed(given_values(system.source, settings))
     for text in system.warnings:

@@ -26,7 +26,7 @@ from clutchwork.base.shell import (
     writable,
     wrote,
 )
-from clutchwork.command.models import add_set, system_of
+from clutchwork.command.models import add_set, add_trust, system_of
 from clutchwork.command.progress import bar
 from clutchwork.declare.wording import words_of_files
 from clutchwork.run.flags import add_options, given_options
@@ -58,6 +58,7 @@ def add_commands(commands: Any) -> None:
     )
     add_model(run)
     add_set(run)
+    add_trust(run)
     run.add_argument(
         "--signals",
         metavar="NAMES",
@@ -112,7 +113,7 @@ def add_commands(commands: Any) -> None:
     # what a demonstration shares with a run
     demo.set_defaults(set=[], signals=None, units=[], ratio=None, plot=None, csv=None, events=None, write=[], save=None)
     demo.set_defaults(start=None, save_state=None, losses=False, sankey=None)
-    demo.set_defaults(quiet=False)
+    demo.set_defaults(quiet=False, trust=False)
 
 
 def run_command(asked: argparse.Namespace) -> int:
@@ -127,7 +128,7 @@ def run_command(asked: argparse.Namespace) -> int:
 
     wanted = _wanted(asked)
     writable(wanted)
-    system = system_of(asked.model, asked.set)
+    system = system_of(asked.model, asked.set, trust=asked.trust)
     shafts = chosen_shafts(system, asked.ratio)
     start = State.load(asked.start) if asked.start is not None else None
     with words_of_files():
@@ -138,18 +139,19 @@ def run_command(asked: argparse.Namespace) -> int:
         chosen = SignalFiles(chosen_signals(known, asked.signals or ["*"]), given_units(asked.units, known))
     names = chosen.names
     _say_unused(asked)
-    run, code = _simulated(system, t_end, options, start, hidden=asked.quiet or asked.json)
+    run, code, why = _simulated(system, t_end, options, start, hidden=asked.quiet or asked.json)
     found = phases(run, shafts) if shafts and len(run) else []
     written = _write(run, chosen, wanted) if len(run) else []
     if asked.json:
         data = report.run_data(run, found, shafts, names if asked.signals else ())
         more = {"losses": run.losses().to_dict()} if asked.losses and len(run) else {}
-        tell_json(data | more | {"files": [str(path) for path in written]})
+        failed = {"status": "failed", "message": why} if why and run.finished else {}
+        tell_json(data | failed | more | {"files": [str(path) for path in written]})
     elif not asked.quiet:
         losses = ["", str(run.losses())] if asked.losses and len(run) else []
         tell("\n".join([report.run_text(run, found, shafts), *losses, *(["", *wrote(written)] if written else [])]))
-    if not run.finished:
-        sys.stderr.write(f"clutchwork: {run.message}\n")
+    if why:
+        sys.stderr.write(f"clutchwork: {why}\n")
     return code
 
 
@@ -166,10 +168,11 @@ def _say_unused(asked: argparse.Namespace) -> None:
 
 def _simulated(
     system: System, t_end: float, options: Options, start: State | None, *, hidden: bool
-) -> tuple[Trajectory, int]:
-    """What came of a run, and the exit code."""
+) -> tuple[Trajectory, int, str]:
+    """What came of a run, the exit code, and why it ended early."""
     from clutchwork.run.failure import Interrupted, StoppedEarly
     from clutchwork.run.simulation import simulate
+    from clutchwork.run.trajectory import SimulationError
 
     with warnings.catch_warnings(), bar(options.t_start, t_end, hidden=hidden) as told:
         # the exit code and the message report it
@@ -177,8 +180,13 @@ def _simulated(
         try:
             run = simulate(system, t_end, start=start, options=options, progress=told)
         except Interrupted as stop:
-            return stop.trajectory, INTERRUPTED
-    return run, DONE if run.finished else STOPPED
+            return stop.trajectory, INTERRUPTED, stop.trajectory.message
+        except SimulationError as stop:
+            # what a model file can have of that is an FMU
+            if stop.trajectory is None:
+                raise
+            return stop.trajectory, STOPPED, str(stop)
+    return run, DONE if run.finished else STOPPED, run.message
 
 
 class SignalFiles(NamedTuple):

@@ -266,11 +266,14 @@ class Driveline:
 
     @classmethod
     @explained("cw.Driveline.load", path="'model.toml'")
-    def load(cls, path: str | Path) -> Driveline:
-        """Read a model file, TOML or JSON; ModelError lists all its mistakes."""
+    def load(cls, path: str | Path, *, trust: bool = False) -> Driveline:
+        """Read a model file, TOML or JSON; ModelError lists all its mistakes.
+
+        Parameters: trust, whether it may have FMUs of other people, whose libraries a run executes.
+        """
         from clutchwork.files.model_file import load
 
-        return cls._of(load(path_of("cw.Driveline.load", path, "model.toml")))
+        return cls._of(load(path_of("cw.Driveline.load", path, "model.toml"), trust=trust))
 
     @explained("d.save", path="'model.toml'")
     def save(self, path: str | Path) -> None:
@@ -291,11 +294,11 @@ class Driveline:
         return made
 
     @classmethod
-    def from_dict(cls, data: Mapping[str, Any], folder: str | Path = "") -> Driveline:
-        """A driveline from the content of a model file; CSV paths are relative to the folder."""
+    def from_dict(cls, data: Mapping[str, Any], folder: str | Path = "", *, trust: bool = False) -> Driveline:
+        """A driveline from the content of a model file; its paths are relative to the folder, `trust` as for `load`."""
         from clutchwork.files.model_file import from_dict
 
-        return cls._of(from_dict(data, folder))
+        return cls._of(from_dict(data, folder, trust=trust))
 
     def to_dict(self) -> dict[str, Any]:
         """The content of a model file."""

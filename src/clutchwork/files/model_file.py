@@ -59,8 +59,8 @@ ENDINGS = (".toml", ".json")
 NO_MODELS = ("pyproject.toml", "package.json", "package-lock.json", "tsconfig.json", "Cargo.toml")
 
 
-def load(path: str | Path) -> Model:
-    """Read a model file; ModelError lists all its mistakes."""
+def load(path: str | Path, *, trust: bool = False) -> Model:
+    """Read a model file; ModelError lists all its mistakes. Parameters: trust, whether it may have FMUs, which run."""
     path = Path(path)
     try:
         text = read_regular(path, MOST_BYTES).decode("utf-8-sig")
@@ -70,7 +70,7 @@ def load(path: str | Path) -> Model:
         remedy = _elsewhere(path) if missing else "give a TOML or JSON file in UTF-8"
         problem = Problem("file", "", "does not exist" if missing else f"cannot be read: {why}", remedy=remedy)
         raise ModelFileError([problem], str(path)) from None
-    return _from_text(path, text.replace("\r\n", "\n"))
+    return _from_text(path, text.replace("\r\n", "\n"), trust=trust)
 
 
 def _elsewhere(path: Path) -> str:
@@ -87,13 +87,13 @@ def _elsewhere(path: Path) -> str:
     return f"check the path, or write a model to start from: clutchwork new {path}"
 
 
-def _from_text(path: Path, text: str) -> Model:
+def _from_text(path: Path, text: str, *, trust: bool) -> Model:
     if path.suffix.lower() not in ENDINGS:
         problem = Problem("file", "", "must end in .toml or .json", quote(path.name), "rename the file")
         raise ModelError([problem], str(path))
     with tolerable(str(path)):
         data = _parsed(path, text)
-    return from_dict(data, path.parent, str(path), LineNumbers(text, path.suffix.lower()))
+    return from_dict(data, path.parent, str(path), LineNumbers(text, path.suffix.lower()), trust=trust)
 
 
 def _parsed(path: Path, text: str) -> Any:
@@ -129,9 +129,11 @@ def _no_constant(name: str) -> float:
     raise ValueError(f"{name} is not allowed in a model file")
 
 
-def from_dict(data: Any, folder: str | Path = "", source: str = "", lines: LineNumbers | None = None) -> Model:
+def from_dict(
+    data: Any, folder: str | Path = "", source: str = "", lines: LineNumbers | None = None, *, trust: bool = False
+) -> Model:
     """A model from the content of a model file; CSV paths are relative to the folder."""
-    reader = ModelReader(str(folder))
+    reader = ModelReader(str(folder), trust)
     with tolerable(source), words_of_files(), one_reading():
         model = reader.model(data)
         problems = reader.problems + findings(model, reader.incomplete).problems
@@ -170,7 +172,14 @@ def to_dict(model: Model, *, folder: str | Path | None = None, embed: bool = Fal
         data[key] = [writer.node(node) for node in model.nodes if node.domain is domain]
     for key in ("thermal", "ambient"):
         data[key] = [writer.thermal(node) for node in model.thermal if node_kind(node) == key]
-    data["element"] = [writer.element(element) for element in model.elements]
+    elements = [writer.element(element) for element in model.elements]
+    data["fmu"] = []
+    if writer.fmus:
+        # loaded where a model has one
+        from clutchwork.files.fmus import table
+
+        data["fmu"] = [table(fmu, name, writer.folder) for fmu, name in writer.fmus.items()]
+    data["element"] = elements
     problems = [*writer.problems, *settings_problems(model.settings)]
     if problems:
         raise ModelError(problems, model.name)

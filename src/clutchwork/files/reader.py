@@ -20,14 +20,15 @@ from clutchwork.model.problems import NODE_FIELDS, node_path
 from clutchwork.model.thermal import NODE_FIELDS as THERMAL_FIELDS
 
 FORMAT = 1
-TOP = ("format", "name", "description", "shaft", "mass", "thermal", "ambient", "element", "simulation")
+TOP = ("format", "name", "description", "shaft", "mass", "thermal", "ambient", "fmu", "element", "simulation")
 
 
 class ModelReader(ValueReader):
     """Turns plain data into a model and collects what is wrong with it."""
 
-    def __init__(self, folder: str) -> None:
+    def __init__(self, folder: str, trust: bool = False) -> None:
         super().__init__(folder, References(self._element))
+        self.trust = trust  # whether libraries of FMUs may run
         self.incomplete: list[str] = []  # nodes at elements that could not be made
 
     def model(self, data: Any) -> Model:
@@ -41,6 +42,8 @@ class ModelReader(ValueReader):
             remedy = f"this version reads format {FORMAT}"
             self._report(At("file", "format"), "is an unknown format", quote(data["format"]), remedy)
         model = Model(self._text(data, "name", "file", "driveline"))
+        if "fmu" in data:
+            self._fmus(data)
         for kind, domain in (("shaft", Domain.ROTATION), ("mass", Domain.TRANSLATION)):
             for place, entry in self._entries(data, kind):
                 self._node(model, entry, domain, kind, place)
@@ -112,6 +115,16 @@ class ModelReader(ValueReader):
                 return made
         self.incomplete += [value for value in entry.values() if isinstance(value, str)]
         return None
+
+    def _fmus(self, data: Mapping[str, Any]) -> None:
+        # loaded where a model has one
+        from clutchwork.files.fmus import fmu
+
+        for place, entry in self._entries(data, "fmu"):
+            name = self._text(entry, "name", f"fmu number {place}")
+            made = fmu(entry, name, self.folder, trust=self.trust)
+            self.fmus.setdefault(name, BROKEN if isinstance(made, list) else made)
+            self.problems += made if isinstance(made, list) else []
 
     def _simulation(self, data: Any) -> dict[str, Any]:
         at = At("simulation", "")

@@ -8,7 +8,7 @@ from functools import cache
 from pathlib import Path
 from typing import Any, TypeVar
 
-from clutchwork.base.errors import Problem, near
+from clutchwork.base.errors import FMUError, Problem, near
 from clutchwork.base.quote import listed, quote
 from clutchwork.declare.node import HOUSING, Domain, Node, ThermalNode
 from clutchwork.declare.quantity import PLAIN, QuantityError, in_si, scale_to_si
@@ -55,6 +55,7 @@ class ValueReader:
         self.problems: list[Problem] = []
         self.nodes: dict[str, Node] = {HOUSING.name: HOUSING}
         self.thermal: dict[str, ThermalNode] = {}
+        self.fmus: dict[str, Any] = {}  # of other people, BROKEN where one cannot be used
         self.strays: dict[str, str] = {}  # names in tables whose heads are misspelt
 
     def _report(self, at: At, message: str, value: str = "", remedy: str = "") -> Any:
@@ -138,7 +139,7 @@ class ValueReader:
         if spec.what in ("signal", "alternative"):
             if is_named(value, self.thermal, self.elements, self.nodes) or self.elements.part(value):
                 return self._other(value, at)
-            is_signal = isinstance(value, Mapping) and "type" in value
+            is_signal = isinstance(value, Mapping) and ("type" in value or "fmu" in value)
             return self._signal(value, spec, at) if is_signal else self._number(value, spec, at)
         if spec.what == "curve":
             return self._converted(lambda: curve_in_si(value, spec, at), at)
@@ -229,6 +230,21 @@ class ValueReader:
             return self._report(at, message, quote(name), f"known names: {listed(known)}")
         return found if isinstance(value, str) else referred(value, found)
 
+    def _guest(self, value: Mapping[str, Any], at: At) -> Any:
+        """An output of an FMU of other people."""
+        self._unknown(value, ("fmu", "output"), at)
+        found = self.fmus.get(value["fmu"]) if isinstance(value["fmu"], str) else None
+        if found is None:
+            known = f"FMUs are {listed(self.fmus)}" if self.fmus else "add one: [[fmu]]"
+            message = "is not an FMU of this model" + near(value["fmu"], self.fmus)
+            return self._report(at.inner("fmu"), message, quote(value["fmu"]), known)
+        if found is BROKEN:
+            return BROKEN
+        try:
+            return found[value.get("output")]
+        except FMUError as error:
+            return self._report(at.inner("output"), str(error), quote(value.get("output")))
+
     def _typed(self, value: Any, role: Role, at: At, taken: tuple[str, ...] = ("type",)) -> Any:
         """A law or a signal from a table with its type."""
         known = REGISTRY[role]
@@ -250,6 +266,8 @@ class ValueReader:
 
     def _signal(self, value: Mapping[str, Any], spec: Spec, at: At) -> Any:
         """A signal; with `unit` its plain numbers are in that unit."""
+        if "fmu" in value:
+            return self._guest(value, at)
         scale: Any = PLAIN
         if "unit" in value:
             scale = self._converted(lambda: scale_to_si(value["unit"], at.unit, spec.units), at.inner("unit"))

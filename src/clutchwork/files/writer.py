@@ -16,14 +16,17 @@ from clutchwork.declare.node import HeatFlow, Rate, is_reference
 from clutchwork.declare.schema import Spec, specs
 from clutchwork.declare.wording import path_of
 from clutchwork.files.values import element_kinds, is_path
+from clutchwork.fmu_import.output import Output
 from clutchwork.model.numbers import At
 from clutchwork.model.problems import NODE_FIELDS
 from clutchwork.model.thermal import NODE_FIELDS as NODE_KINDS
 from clutchwork.model.thermal import node_kind
 from clutchwork.signals.column import Column
+from clutchwork.signals.sampled import Sampled
 
 if TYPE_CHECKING:
     from clutchwork.declare.node import Component, Node, ThermalNode
+    from clutchwork.fmu_import.fmu import FMU
 
 
 class Writer:
@@ -32,6 +35,7 @@ class Writer:
     def __init__(self, folder: str | None, embed: bool) -> None:
         self.folder, self.embed = folder, embed
         self.problems: list[Problem] = []
+        self.fmus: dict[FMU, str] = {}  # of other people, by their names in the file
 
     def node(self, node: Node) -> dict[str, Any]:
         """A shaft or a mass; what has its default value is left out."""
@@ -102,12 +106,23 @@ class Writer:
             return [list(map(float, row)) if hasattr(row, "__len__") else float(row) for row in value]
         if isinstance(value, Column) and self.embed:
             return {"type": "table", "points": [list(pair) for pair in value.points]}
+        if isinstance(value, Sampled) and isinstance(value.function, Output):
+            return {"fmu": self._named(value.function.fmu), "output": value.function.name}
         if hasattr(value, "__dataclass_fields__"):
             fields_ = self._fields(value, at.path)
             if isinstance(value, Column):
                 fields_["path"] = self._path(value)
             return {"type": value.kind, **fields_}
         return value if isinstance(value, str | bool | int) else float(value)
+
+    def _named(self, fmu: FMU) -> str:
+        """The name of an FMU, another one where two have the same."""
+        if fmu not in self.fmus:
+            taken, number = set(self.fmus.values()), 1
+            while (name := fmu.name if number == 1 else f"{fmu.name} {number}") in taken:
+                number += 1
+            self.fmus[fmu] = name
+        return self.fmus[fmu]
 
     def _path(self, column: Column) -> str:
         return self._relative(Path(column.folder, column.path))

@@ -34,7 +34,8 @@ def add_command(subparsers: Any) -> None:
         examples=EXAMPLES,
     )
     shell.add_model(fmu)
-    fmu.add_argument("more", nargs="*", type=Path, metavar="FMU", help="after `merge` in place of a model: FMUs to join")
+    joined = "after `merge`, in place of a model: FMUs to join"
+    fmu.add_argument("more", nargs="*", type=Path, metavar="FMU", help=joined)
     fmu.add_argument("--out", type=Path, metavar="FILE", help="the FMU; default: the name of the model file")
     fmu.add_argument("--version", choices=("2.0", "3.0"), default="2.0", help="of FMI; default: 2.0")
     fmu.add_argument("--inputs", metavar="A,B", default="", help="signals that the other simulator sets; default: none")

@@ -274,7 +274,7 @@ def _refuse(system: System, outputs: Mapping[str, Output]) -> None:
         if isinstance(one, Computed)
     ]
     problems += [
-        f"{one.name} is set by a Python function, which has no derivative; take a table of what it gives"
+        f"{one.name} is set by a Python function or an FMU, which has no derivative; take a table of what it gives"
         for one in controllers(system.inputs)
     ]
     if problems:

@@ -8,6 +8,7 @@ from dataclasses import field
 from typing import TYPE_CHECKING, Any
 
 from clutchwork.base.classes import dataclass
+from clutchwork.base.errors import FMUError
 from clutchwork.run.trajectory import SimulationError
 
 if TYPE_CHECKING:
@@ -15,6 +16,7 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from clutchwork.assembly.records import Input
+    from clutchwork.fmu_import.guests import Guests
     from clutchwork.results.channels import Channels
     from clutchwork.results.external_settings import Held
 
@@ -33,6 +35,8 @@ class Controller:
         try:
             given = self.function(time, readings)
             value = math.nan if given is None else float(given)
+        except FMUError as error:
+            raise SimulationError(str(error)) from error
         except Exception as error:
             raise SimulationError(f"controller of {self.name!r} failed at {time:.9g} s: {error!r}") from error
         if not math.isfinite(value):
@@ -41,13 +45,41 @@ class Controller:
         return value
 
 
-def controllers(inputs: Sequence[Input], held: Container[str] = ()) -> tuple[Controller, ...]:
-    """The inputs of a System that Python functions set, without those that are held from outside."""
+def controllers(
+    inputs: Sequence[Input], held: Container[str] = (), guests: Guests | None = None
+) -> tuple[Controller, ...]:
+    """The inputs of a System that Python functions set, without those that are held from outside.
+
+    Parameters: guests, the FMUs of the run that asks them.
+    """
     return tuple(
-        Controller(item.name, index, *sampling)
+        Controller(item.name, index, sampling.period, guests.bound(sampling.function) if guests else sampling.function)
         for index, item in enumerate(inputs)
         if (sampling := item.signal.sampling()) is not None and item.name not in held
     )
+
+
+def guests_of(inputs: Sequence[Input]) -> Guests | None:
+    """The FMUs of other people that a run of a System needs, none of them started yet; None where no function is."""
+    functions = [sampling.function for item in inputs if (sampling := item.signal.sampling()) is not None]
+    if not functions:
+        return None
+    # loaded where functions set inputs
+    from clutchwork.fmu_import.guests import Guests
+
+    return Guests(functions)
+
+
+def refuse_guests(inputs: Sequence[Input], held: Container[str] = ()) -> None:
+    """StateError where FMUs set inputs of a System: no state of a run holds theirs."""
+    # loaded where a run goes on from a state
+    from clutchwork.fmu_import.output import Output
+    from clutchwork.results.state import StateError
+
+    names = [one.name for one in controllers(inputs, held) if isinstance(one.function, Output)]
+    if names:
+        why = "which begins at the start of a run, and no state of a run holds its own"
+        raise StateError(f"{names[0]!r} is set by an FMU, {why}: run from the start, or set it to a number or a table")
 
 
 Settings = list[tuple[int, float]]

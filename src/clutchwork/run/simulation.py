@@ -6,7 +6,7 @@ import os
 import time
 import warnings
 from collections.abc import Mapping
-from contextlib import AbstractContextManager, nullcontext
+from contextlib import AbstractContextManager, closing, nullcontext
 from dataclasses import replace
 from functools import partial
 from typing import TYPE_CHECKING, Any, Protocol, Unpack
@@ -23,7 +23,7 @@ from clutchwork.declare.layout import DONE, INTERRUPTED, NOT_FINITE, STATUSES
 from clutchwork.declare.options import Options, instants
 from clutchwork.results.events import from_rows
 from clutchwork.run.begin import advance, begun, reach, row_of, state_of
-from clutchwork.run.control import Control, controllers
+from clutchwork.run.control import Control, controllers, guests_of, refuse_guests
 from clutchwork.run.jumps import jump_times
 from clutchwork.run.record import Progress, Recording, Told, record
 from clutchwork.run.settings import merged, refuse_endless
@@ -125,9 +125,12 @@ def simulate(
     end, chosen = merged(system.settings, given, options)
     refuse_endless(system.inputs, chosen.t_start, end, chosen.max_steps)
     held, changed = (start.held, start.changed) if start else ({}, {})
-    asked, first = controllers(system.inputs, held), start.before if start else None
+    if start is not None:
+        refuse_guests(system.inputs, held)
+    guests = guests_of(system.inputs)
+    asked, first = controllers(system.inputs, held, guests), start.before if start else None
     control = Control(asked, partial(_channels, system), held=held, changed=changed, first=first)
-    with _followed(progress, chosen.t_start, end) as told:
+    with _followed(progress, chosen.t_start, end) as told, closing(guests) if guests else nullcontext():
         run = trajectory(Job(system, end, chosen, control, start), told)
     if any(event.cause == "fault" for event in run.events):
         from clutchwork.run.failure import report_faults

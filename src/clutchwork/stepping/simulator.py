@@ -20,7 +20,7 @@ from clutchwork.declare.options import Options
 from clutchwork.declare.quantity import QuantityError, has_unit, in_si
 from clutchwork.results.state import State, StateError
 from clutchwork.run.begin import begun, choose, put, seen, state_of
-from clutchwork.run.control import Controller, controllers, instants, is_due
+from clutchwork.run.control import Controller, controllers, guests_of, instants, is_due, refuse_guests
 from clutchwork.run.failure import warn_of_faults
 from clutchwork.run.readings import Readings
 from clutchwork.run.settings import without_end
@@ -80,6 +80,9 @@ class Simulator:
         self._instant, self._readout = np.empty(1), Readout(self._system, self._options, self._run.row_size)
         self._outside = Outside(self._system)
         self._sampled = bool(controllers(self._system.inputs))
+        if start is not None:
+            refuse_guests(self._system.inputs, start.held)
+        self._guests = guests_of(self._system.inputs)
         self._start = start
         self._begin(start, start)
         self._row()
@@ -182,10 +185,16 @@ class Simulator:
             self._run.set_input(*numbers[0])
             self._done("control", one.name, None, numbers)
 
+    def _renew_guests(self) -> None:
+        """FMUs begin anew where they are asked again."""
+        if self._guests is not None:
+            self._guests.renew()
+
     def _asked(self, controller: Controller, readings: Readings) -> float:
         try:
             return controller.value(self._time, readings)
         except SimulationError as error:
+            self._renew_guests()
             raise self._failed(SimulationError(str(error), self.run)) from error.__cause__
 
     # ------------------------------------------------------------------------------------------------------ setting
@@ -250,7 +259,7 @@ class Simulator:
         self._stale, self._ahead = True, None
 
     def _find_controllers(self) -> None:
-        self._controllers = controllers(self._system.inputs, self._outside.held) if self._sampled else ()
+        self._controllers = controllers(self._system.inputs, self._outside.held, self._guests) if self._sampled else ()
 
     @property
     def held(self) -> dict[str, Any]:
@@ -350,6 +359,7 @@ class Simulator:
         """
         if not isinstance(state, State):
             raise UseError("sim.restore", [f"state is {quote(state)}: {OF_A_STATE}"])
+        refuse_guests(self._system.inputs, state.held)
         before = self._run.save()
         try:
             put(self._run, self._system, state)
@@ -370,6 +380,7 @@ class Simulator:
 
     def _begin(self, here: State | None, start: State | None) -> None:
         """Forget the past; `start` is what the run is repeated from."""
+        self._renew_guests()
         self._past = Past(self._system, start, self._run.time, self._outside.begin(here))
         self._here(here)
 

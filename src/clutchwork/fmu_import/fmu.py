@@ -1,0 +1,153 @@
+"""An FMU of other people as a part of a driveline: its outputs set inputs of elements."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from functools import cached_property
+from math import isfinite
+from numbers import Real
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from clutchwork.base.errors import FMUError, UseError
+from clutchwork.base.paths import path_of
+from clutchwork.base.quote import quote
+from clutchwork.declare.calls import explained
+from clutchwork.declare.quantity import QuantityError, has_unit, in_si
+from clutchwork.fmu_import import archive
+from clutchwork.fmu_import.description import INPUT, OUTPUT, PARAMETER, Description, FMUVariable, read
+from clutchwork.fmu_import.library import Assignment
+from clutchwork.fmu_import.output import Output
+from clutchwork.fmu_import.platforms import library_of
+
+if TYPE_CHECKING:
+    from clutchwork.declare.node import Number
+    from clutchwork.signals.sampled import Sampled
+
+UNTRUSTED = "runs the library of another program with all that you may do: say trust=True if you know where it is from"
+
+
+class FMU:
+    """An FMU for co-simulation (FMI 2.0 or 3.0) that runs beside a driveline: `fmu["p"]` is a signal for its elements.
+
+    Use it for a controller or a model of other people. Every `period` it reads its inputs just before that instant and
+    steps by one period; what it gives then holds from the next instant on: one period of delay, as of a control unit.
+    At the first instant its outputs are those of its initialisation. Each run starts it afresh in a process of its own,
+    which ends in a `SimulationError` with the name of the FMU where it crashes, hangs or reports an error.
+    """
+
+    @explained("cw.FMU", path="'controller.fmu'", period="0.01", trust="True")
+    def __init__(
+        self,
+        path: str | Path,
+        period: Number,
+        *,
+        inputs: Mapping[str, str] | None = None,
+        parameters: Mapping[str, float] | None = None,
+        trust: bool = False,
+        time_limit: Number = 60.0,
+        name: str = "",
+    ) -> None:
+        """Read what an FMU says of itself; its library is loaded by runs alone.
+
+        Parameters: period [s] from one step to the next; inputs, names of results by those of its inputs, such as
+        {"slip": "c1.slip"}; parameters, numbers by name in the units of the FMU, also start values of inputs that
+        nothing drives; trust, must be True, for a run executes the library; time_limit [s] for each of its steps and
+        for its start; name in messages, that of the file by default. Values are in the SI units of the driveline, where
+        the FMU says its own. UseError for arguments that do not fit, FMUError for any other file.
+        """
+        self.path = path_of("cw.FMU", path, "controller.fmu").absolute()
+        self.name = name or self.path.stem
+        problems = list[str]()
+        self.period = _seconds("period", period, problems)
+        self.time_limit = _seconds("time_limit", time_limit, problems)
+        self.inputs = _named("inputs", inputs, str, "names of results, such as {'slip': 'c1.slip'}", problems)
+        self.parameters = _named("parameters", parameters, Real, "numbers, such as {'gain': 2.0}", problems)
+        if trust is not True:
+            problems.append(f"{quote(self.path.name)} {UNTRUSTED}")
+        if problems:
+            raise UseError("cw.FMU", problems)
+        try:
+            self._description, self._library = self._read()
+            for wanted, names in ((INPUT, self.inputs), (PARAMETER, self.parameters)):
+                for one in names:
+                    self._description.variable(one, wanted)
+        except FMUError as error:
+            raise FMUError(f"FMU {quote(self.name)} ({self.path}): {error}") from None
+
+    def _read(self) -> tuple[Description, str]:
+        made = read(archive.description_of(self.path))
+        return made, library_of(made, archive.names_in(self.path))
+
+    def __getitem__(self, output: str) -> Sampled:
+        """An output as a signal that sets an input of an element; FMUError with near names where there is none."""
+        # loaded where a signal is made
+        from clutchwork.signals.sampled import Sampled
+
+        try:
+            self._description.variable(output, OUTPUT)
+        except FMUError as error:
+            raise FMUError(f"FMU {quote(self.name)}: {error}") from None
+        return Sampled(Output(self, output), self.period)
+
+    @property
+    def outputs(self) -> tuple[str, ...]:
+        """Names of its outputs that are numbers."""
+        known = self._description.variables.values()
+        return tuple(one.name for one in known if one.causality == OUTPUT and one.type)
+
+    def variable(self, name: str) -> FMUVariable:
+        """A variable of it."""
+        return self._description.variables[name]
+
+    def assignment(self, outputs: list[str]) -> Assignment:
+        """What a run of it is, with some of its outputs; FMUError where the file is not what it was."""
+        if self._read() != (self._description, self._library):
+            raise FMUError(f"{self.path} is not the file any more that it was: make cw.FMU anew")
+        made, of = self._description, self._description.variables
+        given = [(of[one].reference, of[one].type, value) for one, value in self.parameters.items()]
+        read_, wanted = ([(of[one].reference, of[one].type) for one in names] for names in (self.inputs, outputs))
+        return Assignment("", self._library, made.version, self.name, made.token, read_, wanted, given)
+
+    @cached_property
+    def _key(self) -> tuple[Any, ...]:
+        given = (*self.inputs.items(), *self.parameters.items())
+        return self.path, self.name, self.period, self.time_limit, given
+
+    def __eq__(self, other: object) -> bool:
+        return isinstance(other, FMU) and self._key == other._key
+
+    def __hash__(self) -> int:
+        return hash(self._key)
+
+    def __repr__(self) -> str:
+        version, count = self._description.version, len(self.outputs)
+        return f"<FMU {quote(self.name)}, FMI {version}, every {self.period:g} s, {count} outputs>"
+
+
+def _seconds(name: str, given: Any, problems: list[str]) -> float:
+    try:
+        value = in_si(given, "s") if has_unit(given) else given
+    except QuantityError:
+        value = None
+    number = float(value) if isinstance(value, Real) and not isinstance(value, bool) else 0.0
+    if isfinite(number) and number > 0.0:
+        return number
+    problems.append(f"{name} is {quote(given)}: give a time in s above 0")
+    return 1.0
+
+
+def _named(name: str, given: Any, kind: Any, such: str, problems: list[str]) -> dict[str, Any]:
+    """A table by names; what does not fit is a problem."""
+    values = {} if given is None else given
+    if not isinstance(values, Mapping):
+        problems.append(f"{name} is {quote(given)}: give a table of {such}")
+        return {}
+    convert: Callable[[Any], Any] = float if kind is Real else str
+    made = {}
+    for key, value in values.items():
+        if not isinstance(key, str) or not isinstance(value, kind) or (kind is Real and not isfinite(value)):
+            problems.append(f"{name}: {quote(key)} is {quote(value)}: give {such}")
+        else:
+            made[key] = convert(value)
+    return made
