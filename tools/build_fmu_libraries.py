@@ -75,9 +75,8 @@ def library(platform: str, where: Path) -> Path:
     sections = ["-s", "-Wl,--gc-sections"] if ending == ".so" else ["-s"] if ending == ".dll" else []
     zig(target, "-shared", *sections, *objects, "-o", path)
     # the linker of Windows leaves lists for programs that link with it
-    for spare in where.glob(f"{platform}.*"):
-        if spare.suffix not in (".so", ".dll", ".dylib"):
-            spare.unlink()
+    for spare in (*where.glob("*.lib"), *where.glob("*.pdb")):
+        spare.unlink()
     return path
 
 

@@ -204,8 +204,7 @@ Answer Instance::set(std::uint32_t reference, double value) {
     return say(Answer::discard, Category::error, "'" + one->name + "' must be a finite number");
   if (value < one->least || value > one->most)
     return say(Answer::discard, Category::error,
-               "'" + one->name + "' must be from " + number(one->least) + " to " + number(one->most) + ", not " +
-                   number(value));
+               "'" + one->name + "' must be " + one->bounds + ", not " + number(value));
   if (one->kind == Kind::slope) return set_slope(std::uint32_t(one->of), int(one->order), value);
   if (one->kind == Kind::input)
     for (int order = 1; order <= orders; ++order) now_.slopes[orders * reference + std::size_t(order - 1)] = 0;

@@ -43,7 +43,7 @@ std::vector<Place> places(Reader& from, std::int64_t size) {
 Variable variable(Reader& from, std::int64_t words) {
   Variable made{};
   made.kind = Kind(from.integer(0, kinds - 1));
-  made.name = from.text();
+  made.name = from.text(), made.bounds = from.text();
   made.start = from.number(), made.least = from.number(), made.most = from.number();
   made.of = from.integer(-1, many), made.order = from.integer(0, 3);
   made.inputs.resize(std::size_t(from.count(8)));
@@ -115,7 +115,7 @@ std::string Model::read(const std::vector<unsigned char>& bytes) {
   t_start = from.number();
   options.resize(std::size_t(from.count(16)));
   for (Option& option : options) option.name = from.text(), option.value = from.number();
-  variables.resize(std::size_t(from.count(72)));
+  variables.resize(std::size_t(from.count(80)));
   for (Variable& one : variables) one = variable(from, std::int64_t(system.size()) / 8);
   forms.resize(std::size_t(from.count(8)));
   for (Form& one : forms) one = form(from, row_size);

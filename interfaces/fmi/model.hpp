@@ -18,6 +18,7 @@ struct Place {
 struct Variable {
   Kind kind;
   std::string name;
+  std::string bounds;  ///< in words
   double start, least, most;
   std::int64_t of;                   ///< a slope: its input; a signal or mode: its form
   std::int64_t order;                ///< of a slope

@@ -34,7 +34,9 @@ def add_command(subparsers: Any) -> None:
     )
     shell.add_model(export)
     export.add_argument("--out", type=Path, metavar="DIR", required=True, help="output folder")
-    export.add_argument("--signals", metavar="A,B", help="signals to print; default: all")
+    export.add_argument(
+        "--signals", metavar="A,B", action="append", help="signals to print, may be given several times; default: all"
+    )
     shell.add_json(export)
     add_options(export, OF_EXPORT, {**DEFAULTS, "dt": "a thousandth of the end time"})
 
@@ -46,7 +48,8 @@ def export_command(asked: argparse.Namespace) -> int:
     from clutchwork.driveline.driveline import Driveline
 
     shell.writable([asked.out / "model.h"])
-    signals = None if asked.signals is None else shell.parts(asked.signals)
+    given = asked.signals
+    signals = None if given is None else [name for text in given for name in shell.parts(text)]
     with warnings.catch_warnings(record=True) as warned, words_of_files():
         warnings.simplefilter("always", ModelWarning)
         folder = export_c(Driveline.load(asked.model), asked.out, signals=signals, **given_options(asked))

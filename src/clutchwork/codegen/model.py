@@ -4,13 +4,14 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from functools import cached_property
-from math import inf, nextafter
+from math import inf
 
 import numpy as np
 
 from clutchwork.assembly.provenance import SystemParameter
 from clutchwork.assembly.system import System
 from clutchwork.assembly.wiring import Wiring, wiring
+from clutchwork.base.bounds import in_words
 from clutchwork.base.c_literal import literal
 from clutchwork.base.classes import dataclass
 from clutchwork.codegen.text import comment, enumeration, identifiers, string
@@ -155,7 +156,12 @@ def _enumerations(model: Exported) -> Iterator[str]:
     yield from enumeration("model_cause", causes)
     yield from ("", "/* What cw_advance returns. */")
     statuses = [(f"MODEL_STATUS_{name.upper()}", k, message) for k, (name, message, _) in enumerate(STATUS)]
-    yield from enumeration("model_status", statuses)
+    refused = (
+        "MODEL_STATUS_REFUSED",
+        -1,
+        "the end time is before the present one or not a number, or there is no room",
+    )
+    yield from enumeration("model_status", [refused, *statuses])
     yield from ("", "/* Where each number stands in an event. */")
     event = [(f"MODEL_EVENT_{name.upper()}", k, unit) for k, (name, unit) in enumerate(EVENT)]
     yield from (*enumeration("model_event", [*event, ("MODEL_EVENT_SIZE", len(event), "numbers in an event")]), "")
@@ -173,15 +179,8 @@ def _parameter(model: Exported, path: str) -> str:
 
 
 def _within(bounds: tuple[float, float]) -> str:
-    """Bounds in words: the number beside one that is not allowed itself is the longer one."""
-    low, high = bounds
-    below, above = nextafter(low, -inf), nextafter(high, inf)
-    words = []
-    if low > -inf:
-        words.append(f"above {below:g}" if len(f"{below:g}") < len(f"{low:g}") else f"from {low:g}")
-    if high < inf:
-        words.append(f"below {above:g}" if len(f"{above:g}") < len(f"{high:g}") else f"to {high:g}")
-    return "".join(f", {word}" for word in words)
+    words = in_words(bounds)
+    return f", {words}" if words else ""
 
 
 def _row(model: Exported) -> list[tuple[str, str]]:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from pathlib import Path
+from xml.etree.ElementTree import fromstring
 from zipfile import ZIP_DEFLATED, BadZipFile, ZipFile, ZipInfo
 
 from clutchwork.base.errors import UseError
@@ -38,6 +39,16 @@ def read(path: Path) -> dict[str, bytes]:
         raise UseError("clutchwork fmu merge", [f"{path} is not an FMU: it is not an archive"]) from None
 
 
+def summary(path: Path) -> str:
+    """Version, inputs and numbers of outputs and parameters of an FMU, in words."""
+    root = fromstring(read(path)["modelDescription.xml"])  # noqa: S314 - written by us just now
+    found = [(one.get("causality"), one.get("name", "")) for one in root.iter() if one.get("causality")]
+    inputs = [name for role, name in found if role == "input" and not name.startswith("der(")]
+    counts = [sum(role == wanted for role, _ in found) for wanted in ("output", "parameter")]
+    names = ", ".join(inputs) or "none"
+    return f"FMI {root.get('fmiVersion')}, inputs: {names}; {counts[0]} outputs, {counts[1]} parameters"
+
+
 def merge(paths: Sequence[Path], out: Path) -> Path:
     """One FMU with the libraries of several that are otherwise the same; UseError where they are not."""
     whole = dict[str, bytes]()
@@ -46,6 +57,8 @@ def merge(paths: Sequence[Path], out: Path) -> Path:
         for name, content in entries.items():
             if name in whole and whole[name] != content:
                 raise UseError("clutchwork fmu merge", [f"{path} and {paths[0]} differ in {name}: export both anew"])
+        if whole and not entries.keys() - whole.keys():
+            raise UseError("clutchwork fmu merge", [f"{path} has no library that {paths[0]} does not have"])
         missing = [name for name in whole if name not in entries and not name.startswith(BINARIES)]
         if missing:
             raise UseError("clutchwork fmu merge", [f"{path} has no {missing[0]}: these are FMUs of two models"])

@@ -15,6 +15,8 @@ from clutchwork.run.flags import add_options, given_options
 
 OF_FMU = ("t_end", *(name for name, row in OPTIONS.items() if row.core))
 MERGE = "merge"
+# names with commas; what is given several times adds up
+LIST: dict[str, Any] = {"metavar": "A,B", "action": "append"}
 
 EXAMPLES = (
     ("clutchwork fmu model.toml --inputs c1.pressure", "model.fmu for FMI 2.0, with one signal as its input"),
@@ -38,9 +40,9 @@ def add_command(subparsers: Any) -> None:
     fmu.add_argument("more", nargs="*", type=Path, metavar="FMU", help=joined)
     fmu.add_argument("--out", type=Path, metavar="FILE", help="the FMU; default: the name of the model file")
     fmu.add_argument("--version", choices=("2.0", "3.0"), default="2.0", help="of FMI; default: 2.0")
-    fmu.add_argument("--inputs", metavar="A,B", default="", help="signals that the other simulator sets; default: none")
-    fmu.add_argument("--outputs", metavar="A,B", help="results that it reads; default: all")
-    fmu.add_argument("--parameters", metavar="A,B", help="numbers that it may change; default: all that can be")
+    fmu.add_argument("--inputs", **LIST, help="signals that the other simulator sets; default: none")
+    fmu.add_argument("--outputs", **LIST, help="results that it reads, such as *.speed; default: all")
+    fmu.add_argument("--parameters", **LIST, help="numbers that it may change; default: all that can be")
     fmu.add_argument("--no-picture", action="store_true", help="leave out the schematic")
     shell.add_json(fmu)
     add_options(fmu, OF_FMU, {"t_end": "that of the model, else 1 s after the start"})
@@ -64,9 +66,9 @@ def fmu_command(asked: argparse.Namespace) -> int:
         path = export_fmu(
             Driveline.load(asked.model),
             out,
-            inputs=asked.inputs,
-            outputs=asked.outputs,
-            parameters=asked.parameters,
+            inputs=_names(asked.inputs) or (),
+            outputs=_names(asked.outputs),
+            parameters=_names(asked.parameters),
             version=asked.version,
             picture=not asked.no_picture,
             **given_options(asked),
@@ -75,6 +77,11 @@ def fmu_command(asked: argparse.Namespace) -> int:
         sys.stderr.write(f"warning: {warning.message}\n")
     _tell(asked, path, [str(w.message) for w in warned])
     return shell.DONE
+
+
+def _names(given: list[str] | None) -> list[str] | None:
+    """Names of all arguments of a kind; None where none was given."""
+    return None if given is None else [name for text in given for name in shell.parts(text)]
 
 
 def _merge(asked: argparse.Namespace) -> int:
@@ -88,7 +95,9 @@ def _merge(asked: argparse.Namespace) -> int:
 
 
 def _tell(asked: argparse.Namespace, path: Path, warned: list[str]) -> None:
+    from clutchwork.fmu.archive import summary
+
     if asked.json:
-        shell.tell_json({"path": str(path), "warnings": warned})
+        shell.tell_json({"path": str(path), "content": summary(path), "warnings": warned})
     else:
-        shell.tell(f"wrote {path}")
+        shell.tell(f"wrote {path}: {summary(path)}")

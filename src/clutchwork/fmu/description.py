@@ -6,6 +6,7 @@ import re
 from math import isfinite
 from xml.etree.ElementTree import Element, SubElement, indent, tostring
 
+from clutchwork.base.bounds import plain
 from clutchwork.fmu.interface import Interface
 from clutchwork.fmu.units import add_units, unit_attributes
 from clutchwork.fmu.variables import FmuVariable, VariableKind
@@ -100,7 +101,9 @@ def _number(one: FmuVariable) -> dict[str, str]:
     """Unit, bounds and start."""
     if one.kind is VariableKind.MODE:
         return {"min": "-1", "max": "2"}
-    bounds = {name: repr(value) for name, value in zip(("min", "max"), one.bounds, strict=True) if isfinite(value)}
+    bounds = {
+        name: repr(value) for name, value in zip(("min", "max"), plain(one.bounds), strict=True) if isfinite(value)
+    }
     given = one.kind in (VariableKind.INPUT, VariableKind.SLOPE, VariableKind.TUNABLE, VariableKind.FIXED)
     return unit_attributes(one.unit) | bounds | ({"start": repr(one.start)} if given else {})
 

@@ -19,9 +19,10 @@ from clutchwork.declare.options import Options
 from clutchwork.driveline.driveline import Driveline
 from clutchwork.fmu import archive
 from clutchwork.fmu.description import description
-from clutchwork.fmu.interface import Interface, advice, interface, plain
+from clutchwork.fmu.interface import Interface, advice, interface
 from clutchwork.fmu.libraries import libraries
 from clutchwork.fmu.manual import manual
+from clutchwork.fmu.names import plain
 from clutchwork.fmu.resource import resource
 from clutchwork.run.settings import merged
 
@@ -54,7 +55,7 @@ def export_fmu(
     Parameters: inputs, names of signals that the other simulator sets, such as "c1.pressure"; outputs, names of
     results, all by default; parameters, names of numbers that it may change, all that can be by default; version of
     FMI, "2.0" or "3.0"; picture, whether the schematic goes with it, for which the extra `draw` is needed; t_end [s]
-    and options (rtol=, t_start= ...) as for `simulate`, by default those of the settings of the model. ModelError
+    and options (rtol=, t_start= ...) as for `simulate`, by default those of the settings of the model. UseError
     names all that does not fit. Variables, units and how masters should set inputs: docs/guide/fmu.md.
 
     Source: Functional Mock-up Interface 2.0.5 and 3.0.2, https://fmi-standard.org.

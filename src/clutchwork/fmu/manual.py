@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from clutchwork.base import html
+from clutchwork.base.bounds import in_words
 from clutchwork.fmu.description import structured
 from clutchwork.fmu.interface import Interface
 from clutchwork.fmu.variables import FmuVariable, VariableKind
@@ -30,7 +31,7 @@ def manual(made: Interface, version: str) -> bytes:
     parts += [html.paragraph(words.format(rates=RATES[version])) for words in HOW]
     for title, kinds in PARTS:
         known = [one for _, one in made.of(*kinds) if version == "3.0" or one.kind is not VariableKind.SLOPE]
-        head = ("name", "unit", "start", "from", "to", "kind", "meaning")
+        head = ("name", "unit", "start", "bounds", "kind", "meaning")
         parts += [html.heading(title), html.table(head, map(_line, known), most=len(known))]
     if made.left_out:
         parts += [
@@ -45,6 +46,5 @@ def manual(made: Interface, version: str) -> bytes:
 
 def _line(one: FmuVariable) -> tuple[str, ...]:
     given = one.kind in (VariableKind.INPUT, VariableKind.SLOPE, VariableKind.TUNABLE, VariableKind.FIXED)
-    low, high = (f"{bound:g}" if abs(bound) < 1e300 else "" for bound in one.bounds)
     kind = one.kind.name.lower() if given else ""
-    return structured(one.name), one.unit, f"{one.start:g}" if given else "", low, high, kind, one.about
+    return structured(one.name), one.unit, f"{one.start:g}" if given else "", in_words(one.bounds), kind, one.about

@@ -10,7 +10,7 @@ from clutchwork.assembly.provenance import SystemParameter
 from clutchwork.assembly.system import System
 from clutchwork.fmu.variables import FmuVariable, LeftOut, Place, VariableKind
 
-BENDS = "what the run needs of it does not follow it along a straight line: export an FMU for each value"
+BENDS = "it is fixed when the FMU is made: export one for each value"
 NOTHING = "it acts on nothing in this driveline"
 
 

@@ -8,6 +8,7 @@ from hashlib import sha256
 from typing import Any, TypeVar
 
 from clutchwork.assembly.wiring import wiring
+from clutchwork.base.bounds import in_words
 from clutchwork.base.classes import dataclass
 from clutchwork.declare.core import core
 from clutchwork.declare.layout import CAUSES, MODES, STATUS
@@ -112,6 +113,8 @@ def _texts(to: ResourceWriter, *words: str) -> None:
 def _variable(to: ResourceWriter, one: FmuVariable, of: int) -> None:
     to.integer(one.kind)
     to.text(one.name)
+    words = in_words(one.bounds)
+    to.text(f"{words} {one.unit}" if words and one.unit != "1" else words)
     for number in (one.start, *one.bounds):
         to.number(number)
     to.integer(of)

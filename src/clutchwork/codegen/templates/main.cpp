@@ -37,7 +37,9 @@ int main() {
   std::printf("time [s]");
   for (const model_signal& signal : model_signals) std::printf(",%s [%s]", signal.name, signal.unit);
   int status = MODEL_STATUS_DONE;
-  double row[MODEL_ROW_SIZE];
+  double row[MODEL_ROW_SIZE] = {};
+  /* what is set before the first step is part of the start */
+  set_inputs(run, MODEL_T_START, row);
   for (int k = 0; k < MODEL_INSTANTS && status == MODEL_STATUS_DONE; ++k) {
     const double time = k + 1 < MODEL_INSTANTS ? fmin(MODEL_T_START + k * MODEL_DT, MODEL_T_END) : MODEL_T_END;
     status = step(run, time);

@@ -63,7 +63,7 @@ int main(void) {
   }
   printf("memory of a run %d bytes, system %d bytes, stack of a step %d bytes\n", MODEL_MEMORY, MODEL_SYSTEM_BYTES,
          deepest);
-  printf("%d steps of %g s: mean %.3g us, worst %.3g us, the one to %g s\n", steps, MODEL_DT, 1e6 * sum / steps,
+  printf("%d steps of %g s: mean %.3g us, worst %.3g us, the step that ends at %g s\n", steps, MODEL_DT, 1e6 * sum / steps,
          1e6 * worst, at);
   return status == MODEL_STATUS_DONE ? 0 : 1;
 }
