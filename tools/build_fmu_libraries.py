@@ -27,6 +27,8 @@ FLAGS = (
     "-fno-rtti",
     "-fvisibility=hidden",
     "-ffunction-sections",
+    # own allocation stays inside
+    "-fvisibility-global-new-delete-hidden",
     # one step for all small sizes, to the bits of those that are compiled for each; one run at a time
     "-DCLUTCHWORK_ONE_SIZE",
     "-DCLUTCHWORK_ALONE",
@@ -72,7 +74,9 @@ def library(platform: str, where: Path) -> Path:
         zig(target, *FLAGS, *inlined, *found, "-c", source, "-o", made)
         objects.append(made)
     path = where / f"{platform}{ending}"
-    sections = ["-s", "-Wl,--gc-sections"] if ending == ".so" else ["-s"] if ending == ".dll" else []
+    exports = ROOT / "interfaces" / "fmi" / "exports.map"
+    plain = ["-s", "-Wl,--gc-sections", f"-Wl,--version-script={exports}"]
+    sections = plain if ending == ".so" else ["-s"] if ending == ".dll" else []
     zig(target, "-shared", *sections, *objects, "-o", path)
     # the linker of Windows leaves lists for programs that link with it
     for spare in (*where.glob("*.lib"), *where.glob("*.pdb")):

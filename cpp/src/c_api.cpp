@@ -88,7 +88,7 @@ int take_sink(Sink& sink, cw_run* run, double t_end, double* times, double* rows
 void move_pointers(cw_run* run, const cw_run& other) {
   auto moved = [&](const double*& p) {
     const auto* at = reinterpret_cast<const unsigned char*>(p);
-    if (at >= other.arrays && at < other.arrays + other.bytes)
+    if (at >= other.arrays && at < other.arrays + other.bytes - head)
       at = run->arrays + (at - other.arrays);
     else if (at >= other.system && at < other.system + other.system_bytes)
       at = run->system + (at - other.system);
@@ -242,8 +242,15 @@ int cw_advance_to_event(cw_run* run, double t_end) {
 }
 
 double cw_next_knot(const cw_run* run) {
-  if (run == nullptr) return infinity;
-  return larger(run->ws.in.next_knot, present(run->ws));
+  double next = infinity;
+  for (std::int64_t i = 0; run != nullptr && i < run->ws.sys.inputs; ++i) {
+    if (is_held(run->ws, int(i))) continue;
+    const auto start = segments_of(run->ws, int(i)).start;
+    std::int64_t k = run->ws.started ? run->ws.in.signal[i].segment : 0;
+    while (start.exist(k) && start(k) <= present(run->ws)) ++k;
+    if (start.exist(k) && k > 0) next = smaller(next, start(k));
+  }
+  return next;
 }
 
 std::int64_t cw_group_size(const cw_run* run) { return run == nullptr ? -1 : group_size(run->ws.sys); }

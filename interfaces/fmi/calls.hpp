@@ -30,11 +30,11 @@ Answer allowed(Instance* instance, unsigned stages, const char* call, Deed&& dee
 /// The worse of two answers.
 inline Answer worse(Answer one, Answer other) { return int(one) > int(other) ? one : other; }
 
-/// Values one after another; the first error ends it.
+/// Values one after another; the first refusal ends it.
 template <class Each>
 Answer each(std::size_t n, Each&& deed) {
   Answer answer = Answer::ok;
-  for (std::size_t i = 0; i < n && int(answer) < int(Answer::error); ++i) answer = worse(answer, deed(i));
+  for (std::size_t i = 0; i < n && int(answer) < int(Answer::discard); ++i) answer = worse(answer, deed(i));
   return answer;
 }
 

@@ -123,7 +123,9 @@ std::string resource_path(const char* location) {
   const std::string given = folder + "/" + file_name;
   if (!folder.empty() && is_there(given)) return given;
   // binaries/PLATFORM/LIBRARY
-  const std::string beside = above(above(above(library_path()))) + "/resources/" + file_name;
+  const std::string own = library_path();
+  if (own.empty()) return given;
+  const std::string beside = above(above(above(own))) + "/resources/" + file_name;
   return is_there(beside) || folder.empty() ? beside : given;
 }
 

@@ -85,6 +85,7 @@ FMI_EXPORT const char* fmi2GetVersion() { return "2.0"; }
 FMI_EXPORT int fmi2SetDebugLogging(void* c, int on, std::size_t n, const char* const names[]) {
   return int(allowed(of(c), any_stage, "fmi2SetDebugLogging", [&](Instance& it) {
     for (int k = 0; k < categories && n == 0; ++k) it.log(on != 0, Category(k));
+    if (n > 0 && names == nullptr) return it.refuse("there are no names of log categories");
     return each(n, [&](std::size_t i) {
       for (int k = 0; k < categories; ++k)
         if (names[i] != nullptr && std::strcmp(names[i], category_names[k]) == 0)
@@ -158,7 +159,8 @@ FMI_EXPORT int fmi2GetString(void* c, const Reference*, std::size_t n, const cha
 FMI_EXPORT int fmi2SetReal(void* c, const Reference* references, std::size_t n, const double* values) {
   return int(allowed(of(c), before_steps | running, "fmi2SetReal", [&](Instance& it) {
     if (n > 0 && (references == nullptr || values == nullptr)) return it.refuse("fmi2SetReal has no values");
-    return each(n, [&](std::size_t i) { return it.set(references[i], values[i]); });
+    const Answer checked = each(n, [&](std::size_t i) { return it.check(references[i], values[i]); });
+    return checked != Answer::ok ? checked : each(n, [&](std::size_t i) { return it.set(references[i], values[i]); });
   }));
 }
 
@@ -188,7 +190,7 @@ FMI_EXPORT int fmi2GetRealOutputDerivatives(void* c, const Reference*, std::size
 FMI_EXPORT int fmi2DoStep(void* c, double from, double size, int) {
   return int(allowed(of(c), in(Stage::step, Stage::failed), "fmi2DoStep", [&](Instance& it) {
     const Answer answer = it.step(from, size, false).answer;
-    it.forget_slopes();
+    if (answer == Answer::ok) it.forget_slopes();
     return answer;
   }));
 }
@@ -238,7 +240,8 @@ FMI_EXPORT int fmi2FreeFMUstate(void* c, void** state) {
 FMI_EXPORT int fmi2SerializedFMUstateSize(void* c, void* state, std::size_t* size) {
   return int(allowed(of(c), any_stage, "fmi2SerializedFMUstateSize", [&](Instance& it) {
     if (state == nullptr || size == nullptr) return it.refuse("there is no state");
-    return *size = it.serialized(*static_cast<State*>(state)).size(), Answer::ok;
+    *size = it.serialized(*static_cast<State*>(state)).size();
+    return *size > 0 ? Answer::ok : it.refuse("the state cannot be saved");
   }));
 }
 
@@ -246,7 +249,7 @@ FMI_EXPORT int fmi2SerializeFMUstate(void* c, void* state, char bytes[], std::si
   return int(allowed(of(c), any_stage, "fmi2SerializeFMUstate", [&](Instance& it) {
     if (state == nullptr || bytes == nullptr) return it.refuse("there is no state");
     const auto made = it.serialized(*static_cast<State*>(state));
-    if (size < made.size()) return it.refuse("there is too little room for the state");
+    if (made.empty() || size < made.size()) return it.refuse("there is too little room for the state");
     return std::memcpy(bytes, made.data(), made.size()), Answer::ok;
   }));
 }
@@ -255,9 +258,7 @@ FMI_EXPORT int fmi2DeSerializeFMUstate(void* c, const char bytes[], std::size_t 
   return int(allowed(of(c), any_stage, "fmi2DeSerializeFMUstate", [&](Instance& it) {
     if (state == nullptr) return it.refuse("fmi2DeSerializeFMUstate has no place for the state");
     State* made = it.deserialized(reinterpret_cast<const unsigned char*>(bytes), std::int64_t(size));
-    if (made == nullptr) return Answer::error;
-    delete static_cast<State*>(*state);
-    return *state = made, Answer::ok;
+    return made == nullptr ? Answer::error : (*state = made, Answer::ok);
   }));
 }
 

@@ -74,6 +74,7 @@ FMI_EXPORT const char* fmi3GetVersion() { return "3.0"; }
 FMI_EXPORT int fmi3SetDebugLogging(void* c, bool on, std::size_t n, const char* const names[]) {
   return int(allowed(of(c), any_stage, "fmi3SetDebugLogging", [&](Instance& it) {
     for (int k = 0; k < categories && n == 0; ++k) it.log(on, Category(k));
+    if (n > 0 && names == nullptr) return it.refuse("there are no names of log categories");
     return each(n, [&](std::size_t i) {
       for (int k = 0; k < categories; ++k)
         if (names[i] != nullptr && std::strcmp(names[i], category_names[k]) == 0)
@@ -127,7 +128,7 @@ FMI_EXPORT int fmi3ExitInitializationMode(void* c) {
 FMI_EXPORT int fmi3EnterEventMode(void* c) {
   return int(allowed(of(c), in(Stage::step), "fmi3EnterEventMode", [&](Instance& it) {
     if (!static_cast<Component*>(c)->has_event_mode) return it.refuse("event mode was not asked for at instantiation");
-    return worse(it.enter(Stage::event), it.show_right_limit());
+    return it.enter(Stage::event);
   }));
 }
 
@@ -157,7 +158,8 @@ FMI_EXPORT int fmi3GetInt32(void* c, const Reference r[], std::size_t n, std::in
 FMI_EXPORT int fmi3SetFloat64(void* c, const Reference r[], std::size_t n, const double values[], std::size_t given) {
   return int(allowed(of(c), before_steps | running, "fmi3SetFloat64", [&](Instance& it) {
     if (n > 0 && (r == nullptr || values == nullptr || given < n)) return it.refuse("fmi3SetFloat64 has no values");
-    return each(n, [&](std::size_t i) { return it.set(r[i], values[i]); });
+    const Answer checked = each(n, [&](std::size_t i) { return it.check(r[i], values[i]); });
+    return checked != Answer::ok ? checked : each(n, [&](std::size_t i) { return it.set(r[i], values[i]); });
   }));
 }
 
@@ -373,7 +375,11 @@ FMI_EXPORT int fmi3GetFMUState(void* c, void** state) {
 
 FMI_EXPORT int fmi3SetFMUState(void* c, void* state) {
   return int(allowed(of(c), any_stage, "fmi3SetFMUState", [&](Instance& it) {
-    return state == nullptr ? it.refuse("there is no state") : it.go_to(*static_cast<State*>(state));
+    if (state == nullptr) return it.refuse("there is no state");
+    const Answer answer = it.go_to(*static_cast<State*>(state));
+    // of an instance with event mode
+    const bool has_mode = static_cast<Component*>(c)->has_event_mode;
+    return it.stage() == Stage::event && !has_mode ? worse(answer, it.enter(Stage::step)) : answer;
   }));
 }
 
@@ -387,7 +393,8 @@ FMI_EXPORT int fmi3FreeFMUState(void* c, void** state) {
 FMI_EXPORT int fmi3SerializedFMUStateSize(void* c, void* state, std::size_t* size) {
   return int(allowed(of(c), any_stage, "fmi3SerializedFMUStateSize", [&](Instance& it) {
     if (state == nullptr || size == nullptr) return it.refuse("there is no state");
-    return *size = it.serialized(*static_cast<State*>(state)).size(), Answer::ok;
+    *size = it.serialized(*static_cast<State*>(state)).size();
+    return *size > 0 ? Answer::ok : it.refuse("the state cannot be saved");
   }));
 }
 
@@ -395,7 +402,7 @@ FMI_EXPORT int fmi3SerializeFMUState(void* c, void* state, std::uint8_t bytes[],
   return int(allowed(of(c), any_stage, "fmi3SerializeFMUState", [&](Instance& it) {
     if (state == nullptr || bytes == nullptr) return it.refuse("there is no state");
     const auto made = it.serialized(*static_cast<State*>(state));
-    if (size < made.size()) return it.refuse("there is too little room for the state");
+    if (made.empty() || size < made.size()) return it.refuse("there is too little room for the state");
     return std::memcpy(bytes, made.data(), made.size()), Answer::ok;
   }));
 }
@@ -404,8 +411,6 @@ FMI_EXPORT int fmi3DeserializeFMUState(void* c, const std::uint8_t bytes[], std:
   return int(allowed(of(c), any_stage, "fmi3DeserializeFMUState", [&](Instance& it) {
     if (state == nullptr) return it.refuse("fmi3DeserializeFMUState has no place for the state");
     State* made = it.deserialized(bytes, std::int64_t(size));
-    if (made == nullptr) return Answer::error;
-    delete static_cast<State*>(*state);
-    return *state = made, Answer::ok;
+    return made == nullptr ? Answer::error : (*state = made, Answer::ok);
   }));
 }

@@ -11,10 +11,8 @@ namespace clutchwork::fmi {
 namespace {
 
 constexpr int orders = 3;
-/// Steps and events that one call may take.
-constexpr double step_budget = 1e7, event_budget = 1e6;
 /// Instants that are closer are one, as a share of them.
-constexpr double round_off = 1e-9;
+constexpr double round_off = 1e-9, most_gap = 0.01;
 
 std::string number(double x) {
   char text[32];
@@ -72,9 +70,9 @@ std::string Instance::told(int status) const {
     const std::string& signal = model_.inputs[std::size_t(value)];
     return at + "'" + signal + "' has more than 50 knots within a microsecond: thin out the signal";
   }
-  const auto crowd = std::size_t(value - double(inputs));
-  if (Status(status) == Status::zeno && part < 0 && value >= double(inputs) && crowd < model_.crowded.size())
-    where = " at '" + model_.crowded[crowd] + "'";
+  const double crowd = value - double(inputs);
+  if (Status(status) == Status::zeno && part < 0 && crowd >= 0 && crowd < double(model_.crowded.size()))
+    where = " at '" + model_.crowded[std::size_t(crowd)] + "'";
   if (part >= 0 && part < std::int64_t(model_.parts.size())) {
     const Part& one = model_.parts[std::size_t(part)];
     where = " at '" + one.name + "'";
@@ -133,6 +131,7 @@ Answer Instance::initialize() {
 
 Answer Instance::enter(Stage stage) {
   if (stage != Stage::terminated && !now_.is_loaded && !load()) return Answer::error;
+  is_seen_ = is_seen_ && stage != Stage::event && now_.stage != Stage::event;
   now_.stage = stage;
   return Answer::ok;
 }
@@ -164,7 +163,8 @@ bool Instance::put(const std::vector<double>& values) {
   while (reinterpret_cast<std::uintptr_t>(memory) % 64 != 0) ++memory;
   const auto room = std::int64_t(memory_.data() + memory_.size() - memory);
   run_ = cw_load(system_.data(), std::int64_t(system_.size()), memory, room);
-  return run_ != nullptr || (refuse("these parameters do not fit the model: reset them"), false);
+  const bool fits = run_ != nullptr && cw_row_size(run_) == std::int64_t(row_.size());
+  return fits || (refuse("these parameters do not fit the model: reset them"), false);
 }
 
 /// A run from its start, with everything that is set.
@@ -192,12 +192,11 @@ const Variable* Instance::variable(std::uint32_t reference) const {
   return reference < model_.variables.size() ? &model_.variables[reference] : nullptr;
 }
 
-Answer Instance::set(std::uint32_t reference, double value) {
+Answer Instance::check(std::uint32_t reference, double value) const {
   const Variable* one = variable(reference);
   if (one == nullptr) return refuse("there is no variable with the value reference " + std::to_string(reference));
-  const bool is_begun = now_.stage != Stage::instantiated && now_.stage != Stage::initialization;
   if (!is_given(*one)) return refuse("'" + one->name + "' is a result, which cannot be set");
-  if (one->kind == Kind::fixed && is_begun)
+  if (one->kind == Kind::fixed && is_begun())
     return refuse("'" + one->name + "' is fixed once the run has begun: set it before, or reset the instance");
   if (now_.stage == Stage::terminated) return refuse("the run is over: reset the instance");
   if (!std::isfinite(value))
@@ -205,24 +204,24 @@ Answer Instance::set(std::uint32_t reference, double value) {
   if (value < one->least || value > one->most)
     return say(Answer::discard, Category::error,
                "'" + one->name + "' must be " + one->bounds + ", not " + number(value));
-  if (one->kind == Kind::slope) return set_slope(std::uint32_t(one->of), int(one->order), value);
-  if (one->kind == Kind::input)
-    for (int order = 1; order <= orders; ++order) now_.slopes[orders * reference + std::size_t(order - 1)] = 0;
+  return Answer::ok;
+}
+
+Answer Instance::set(std::uint32_t reference, double value) {
+  const Answer answer = check(reference, value);
+  if (answer != Answer::ok) return answer;
+  const Variable& one = *variable(reference);
+  if (one.kind == Kind::slope) return set_slope(std::uint32_t(one.of), int(one.order), value);
   if (now_.value[reference] == value) return Answer::ok;
   now_.value[reference] = value;
-  if (!is_begun) {
-    now_.is_loaded = is_seen_ = false;
-    return Answer::ok;
-  }
   is_seen_ = false;
-  if (one->kind == Kind::tunable)
-    for (const Place& place : one->params) {
-      const double now = along(place, *one, 0, value);
-      cw_set_param(run(), place.number, now);
-    }
+  if (!is_begun()) return now_.is_loaded = false, Answer::ok;
+  bool done = true;
+  if (one.kind == Kind::tunable)
+    for (const Place& place : one.params) done = cw_set_param(run(), place.number, along(place, one, 0, value)) && done;
   else
-    for (std::int64_t input : one->inputs) cw_set_input(run(), input, value);
-  return Answer::ok;
+    for (std::int64_t input : one.inputs) done = cw_set_input(run(), input, value) && done;
+  return done ? Answer::ok : refuse("'" + one.name + "' was not taken: export the model again");
 }
 
 Answer Instance::get(std::uint32_t reference, double* value) {
@@ -247,6 +246,7 @@ Answer Instance::set_slope(std::uint32_t input, int order, double value) {
     return refuse("derivatives of inputs are those of order 1 to 3, not " + std::to_string(order));
   if (!std::isfinite(value)) return say(Answer::discard, Category::error, "a derivative must be a finite number");
   now_.slopes[orders * input + std::size_t(order - 1)] = value;
+  is_seen_ = false;
   return Answer::ok;
 }
 
@@ -255,9 +255,15 @@ bool Instance::look() {
   if (!load()) return false;
   if (now_.stage == Stage::failed) return refuse("the run has stopped: reset the instance"), false;
   const std::int64_t n = cw_copy(run(), before_.data(), std::int64_t(before_.size()));
+  const std::vector<double> lines = now_.on_line;
+  give_inputs();
+  // in event mode what inner signals do at this instant is seen, else it waits for the step
+  cw_expect_inputs(run(), now_.stage != Stage::event);
   const int status = cw_row(run(), row_.data());
+  cw_expect_inputs(run(), 1);
   if (status != int(Status::done)) refuse(told(status));
   cw_paste(run(), before_.data(), n);
+  now_.on_line = lines;
   return is_seen_ = status == int(Status::done);
 }
 
@@ -302,8 +308,10 @@ void Instance::follow_slopes(double s) {
 void Instance::give_budget() {
   std::int64_t counts[n_statistics];
   cw_statistics(run(), counts);
-  cw_set_option(run(), "max_steps", double(counts[0] + counts[1]) + step_budget);
-  cw_set_option(run(), "max_events", double(counts[4]) + event_budget);
+  for (const Option& option : model_.options) {
+    if (option.name == "max_steps") cw_set_option(run(), "max_steps", double(counts[0] + counts[1]) + option.value);
+    if (option.name == "max_events") cw_set_option(run(), "max_events", double(counts[4]) + option.value);
+  }
 }
 
 Stepped Instance::step(double from, double size, bool may_return_early) {
@@ -311,7 +319,9 @@ Stepped Instance::step(double from, double size, bool may_return_early) {
   if (!std::isfinite(from) || !std::isfinite(size) || size < 0)
     return {refuse("a step from " + number(from) + " s by " + number(size) + " s is no step")};
   const double begin = cw_time(run());
-  if (std::fabs(from - begin) > round_off * (1 + std::fabs(from)))
+  // masters add up steps, whose round-off is no part of one
+  const double gap = std::fabs(from - begin);
+  if (gap > round_off * (1 + std::fabs(from)) || (size > 0 && gap > most_gap * size))
     return {refuse("the step begins at " + number(from) + " s, but the run is at " + number(begin) + " s")};
   double end = from + size > begin ? from + size : begin;
   give_inputs();
@@ -347,15 +357,6 @@ Answer Instance::stop(int status) {
   return refuse(told(status));
 }
 
-/// Outputs as they are right after the present instant, with what inner signals do there.
-Answer Instance::show_right_limit() {
-  cw_expect_inputs(run(), 0);
-  is_seen_ = false;
-  const bool done = look();
-  cw_expect_inputs(run(), 1);
-  return done ? Answer::ok : Answer::error;
-}
-
 // ------------------------------------------------------------------------------------------------------------- states
 
 State* Instance::state() {
@@ -381,7 +382,8 @@ Answer Instance::go_to(const State& state) {
   if (!state.is_loaded || cw_paste(run(), state.run.data(), std::int64_t(state.run.size())) != 0) return Answer::ok;
   now_ = before;
   now_.is_loaded = false;
-  return refuse("the state is that of another model");
+  now_.stage = Stage::failed;
+  return refuse("the state is that of another model: reset the instance");
 }
 
 namespace {
@@ -413,7 +415,7 @@ std::vector<unsigned char> Instance::serialized(const State& state) {
       saved.resize(std::size_t(cw_state_size(run())));
       cw_save(run(), saved.data(), std::int64_t(saved.size()));
     }
-    go_to(here);
+    if (go_to(here) != Answer::ok || saved.empty()) return {};
   }
   const auto& token = model_.token;
   const std::uint64_t words[state_words] = {
@@ -457,11 +459,16 @@ State* Instance::deserialized(const unsigned char* bytes, std::int64_t n) {
     std::memcpy(part->data(), from, 8 * part->size());
     from += 8 * part->size();
   }
-  for (std::size_t k = 0; k < made->loaded.size(); ++k) {
+  bool fits = std::isfinite(made->t_start) && made->rtol >= 0 && made->rtol < 1;
+  fits = fits && (made->is_loaded || int(made->stage) < int(Stage::step));
+  for (double slope : made->slopes) fits = fits && std::isfinite(slope);
+  for (std::size_t k = 0; k < model_.variables.size(); ++k) {
     const Variable& one = model_.variables[k];
-    const bool fits = made->loaded[k] >= one.least && made->loaded[k] <= one.most;
-    if (is_given(one) && one.kind != Kind::slope && !fits) return refuse(damaged), nullptr;
+    fits = fits && (made->on_line[k] == 0 || (made->on_line[k] == 1 && one.kind == Kind::input));
+    for (double x : {made->loaded[k], made->value[k]})
+      fits = fits && (!is_given(one) || one.kind == Kind::slope || (x >= one.least && x <= one.most));
   }
+  if (!fits) return refuse(damaged), nullptr;
   if (!made->is_loaded) return made.release();
   // read by a run of its own, of which it becomes a copy
   const State here = *std::unique_ptr<State>(state());

@@ -65,6 +65,7 @@ class Instance {
 
   // variables by value reference
   const Variable* variable(std::uint32_t reference) const;
+  Answer check(std::uint32_t reference, double value) const;  ///< whether it may be set now
   Answer set(std::uint32_t reference, double value);
   Answer get(std::uint32_t reference, double* value);
   Answer set_slope(std::uint32_t input, int order, double value);
@@ -72,7 +73,6 @@ class Instance {
   // steps; at an early return the run is right after an event
   Stepped step(double from, double size, bool may_return_early);
   void forget_slopes();
-  Answer show_right_limit();
   double next_knot() const { return now_.is_loaded ? cw_next_knot(run()) : cw_next_knot(nullptr); }
 
   // states
@@ -85,6 +85,7 @@ class Instance {
   explicit Instance(Listener listener) : listener_(listener) {}
 
   cw_run* run() const { return run_; }
+  bool is_begun() const { return now_.stage != Stage::instantiated && now_.stage != Stage::initialization; }
   std::string told(int status) const;
   bool load();
   bool put(const std::vector<double>& values);

@@ -10,8 +10,19 @@ namespace clutchwork::fmi {
 
 namespace {
 
-constexpr char magic[8] = {'C', 'W', 'F', 'M', 'U', '0', '0', '1'};
+constexpr char magic[8] = {'C', 'W', 'F', 'M', 'U', '0', '0', '2'};
 constexpr std::int64_t many = std::int64_t(1) << 40;
+
+/// A checksum of words.
+std::int64_t checksum(const unsigned char* bytes, std::int64_t n) {
+  std::uint64_t sum = std::uint64_t(n), word = 0;
+  for (std::int64_t at = 0; at + 8 <= n; at += 8) {
+    std::memcpy(&word, bytes + at, 8);
+    sum = (sum ^ word) * 0x9e3779b97f4a7c15u;
+    sum ^= sum >> 32;
+  }
+  return std::int64_t(sum);
+}
 
 Combination combination(Reader& from, std::int64_t row_size) {
   Combination made{};
@@ -108,6 +119,8 @@ std::string Model::read(const std::vector<unsigned char>& bytes) {
   if (from.integer(INT64_MIN, INT64_MAX) != cw_schema_hash())
     return "the library and the resource of this FMU are of different versions of clutchwork: export the model again";
   token = from.text();
+  const std::int64_t sum = from.integer(INT64_MIN, INT64_MAX);
+  if (!from.whole() || sum != checksum(from.rest(), from.left())) return damaged;
   std::int64_t n = 0;
   const unsigned char* data = from.bytes(&n);
   system.assign(data, data + n);

@@ -12,6 +12,8 @@ class Reader {
   Reader(const unsigned char* from, std::int64_t bytes) : at_(from), end_(from + bytes) {}
 
   bool whole() const { return whole_; }
+  const unsigned char* rest() const { return at_; }
+  std::int64_t left() const { return end_ - at_; }
   bool is_at_end() const { return whole_ && at_ == end_; }
 
   /// A whole number within bounds.

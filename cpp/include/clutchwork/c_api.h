@@ -77,8 +77,8 @@ int cw_advance(cw_run* run, double t_end, double* times, double* rows, int64_t n
    at cw_time, with events that wait. Take the events that wait before. */
 int cw_advance_to_event(cw_run* run, double t_end);
 
-/* The next instant [s] at which a signal has a knot, which may be the present time; INFINITY: none, or a null pointer.
- */
+/* The first instant [s] after the present time at which a signal of the system has a knot; INFINITY: none, or a null
+   pointer. */
 double cw_next_knot(const cw_run* run);
 
 /* A run of a group and where its rows go; status and filled are written. All as in cw_advance. */

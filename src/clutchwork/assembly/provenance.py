@@ -64,6 +64,16 @@ class SystemParameter:
     _another: Any  # another value that it may have; None: there is none
 
     @property
+    def is_plain(self) -> bool:
+        """Whether it is declared as a number."""
+        return self._spec.what in ("param", "option")
+
+    @property
+    def is_whole(self) -> bool:
+        """Whether it is a whole number, such as one of teeth."""
+        return self._spec.whole
+
+    @property
     def about(self) -> str:
         """What its declaration says of it."""
         return self._spec.doc
@@ -113,9 +123,7 @@ class SystemParameter:
         if self.derivative is not None:
             return self.derivative
         system, value = self._system, float(self.value)
-        low, high = self.bounds
-        far = [value + share * (abs(value) or 1.0) for share in FAR]
-        made = [(x, new) for x in far if low < x < high and (new := _changed(system, self.name, x)) is not None]
+        made = [(x, new) for x in self.far if (new := _changed(system, self.name, x)) is not None]
         is_real = all(_is_real(system, array) for array in self.reach)
         if not is_real or len(made) < 2 or any(differing(system, new) is None for _, new in made):
             return None
@@ -125,6 +133,26 @@ class SystemParameter:
         straight = np.allclose(found, found[0], rtol=1e-12, atol=1e-14 * np.max(np.abs(found)))
         moved = np.flatnonzero(found[0])
         return found[0][moved] if straight and np.array_equal(moved, self.words) else None
+
+    @property
+    def far(self) -> list[float]:
+        """Values within its bounds that are far from its own."""
+        value, (low, high) = float(self.value), self.bounds
+        return [x for share in FAR if low < (x := value + share * (abs(value) or 1.0)) < high]
+
+    def adds_to(self, other: SystemParameter) -> bool:
+        """Whether the words of both, where they change together, are the sums of what each changes alone."""
+        system = self._system
+        pairs = ((x, y) for x in self.far for y in other.far)
+        made = (
+            [_with(system, changes) for changes in ({self.name: x}, {other.name: y}, {self.name: x, other.name: y})]
+            for x, y in pairs
+        )
+        found = next((one for one in made if all(one)), None)
+        if found is None or any(differing(system, one) is None for one in found if one is not None):
+            return False
+        first, second, both = (_words(one) - _words(system) for one in found if one is not None)
+        return bool(np.allclose(both, first + second, rtol=1e-9, atol=1e-12 * max(np.max(np.abs(both)), 1e-300)))
 
     @property
     def when(self) -> str:
@@ -205,11 +233,16 @@ def differing(one: SystemData, other: SystemData) -> Reach | None:
 
 def _changed(system: SystemData, name: str, value: Any) -> SystemData | None:
     """The System with another value; None where that is refused."""
+    return _with(system, {name: value})
+
+
+def _with(system: SystemData, changes: Mapping[str, Any]) -> SystemData | None:
+    """The System with other values; None where they are refused."""
     with warnings.catch_warnings():
         # what is rarely wanted was said of the driveline
         warnings.simplefilter("ignore", ModelWarning)
         try:
-            return changed_system(system, {name: value})
+            return changed_system(system, changes)
         except ModelError:
             return None
 
@@ -227,7 +260,7 @@ def _others(value: Any, spec: Spec) -> Iterator[Any]:
         yield from map(Table, _tables(vars(value)["points"]))
     elif isinstance(value, Signal) and spec.what in SIGNALS:
         yield from (Table([(0.0, level), (1.0, level)]) for level in LEVELS if spec.allows(level))
-    elif hasattr(value, "__len__") and not isinstance(value, str):
+    elif hasattr(value, "__len__") and spec.what in ("curve", "numbers"):
         yield from _tables(value)
 
 

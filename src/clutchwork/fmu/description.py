@@ -144,6 +144,8 @@ def _add_two(root: Element, made: Interface, identifier: str) -> None:
         SubElement(scalar, "Integer" if one.kind is VariableKind.MODE else "Real", _number(one))
     structure = SubElement(root, "ModelStructure")
     for part in ("Outputs", "InitialUnknowns"):
+        if not made.of(VariableKind.SIGNAL, VariableKind.MODE):
+            break
         unknowns = SubElement(structure, part)
         for index, (_, one) in enumerate(listed, start=1):
             if one.kind in (VariableKind.SIGNAL, VariableKind.MODE):

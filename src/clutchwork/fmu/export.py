@@ -66,18 +66,21 @@ def export_fmu(
     if version not in VERSIONS:
         raise UseError("cw.export_fmu", [f"version is {quote(version)}: give '2.0' or '3.0'"])
     system = model.assemble() if isinstance(model, Driveline) else model
-    end, chosen = merged(system.settings, _with_end(system, changes, t_end), options)
+    end, chosen = merged(system.settings, _with_end(system, changes, t_end, options), options)
     wanted = [None if names is None else plain(names) for names in (outputs, parameters)]
     made = interface(system, end, chosen, plain(inputs), *wanted)
-    for one in advice(made):
+    for one in advice(made, system):
         warn(one)
     return archive.write(where.with_suffix(".fmu"), _entries(made, where.stem, version, picture))
 
 
-def _with_end(system: System, changes: Mapping[str, Any], t_end: float | None) -> dict[str, Any]:
+def _with_end(
+    system: System, changes: Mapping[str, Any], t_end: float | None, options: Options | None
+) -> dict[str, Any]:
     """What the call gives; an FMU has no end of its own, so that a second is as good as any."""
     known = t_end if t_end is not None else system.settings.get("t_end")
-    begin = changes.get("t_start", system.settings.get("t_start", 0.0))
+    own = system.settings.get("t_start", 0.0) if options is None else options.t_start
+    begin = changes.get("t_start", own)
     return {**changes, "t_end": known if known is not None else float(begin) + 1.0}
 
 

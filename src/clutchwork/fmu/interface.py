@@ -5,6 +5,8 @@ from __future__ import annotations
 import warnings
 from collections.abc import Iterator, Mapping, Sequence
 
+import numpy as np
+
 from clutchwork.assembly.system import System
 from clutchwork.assembly.wiring import wiring
 from clutchwork.base.classes import dataclass
@@ -110,8 +112,11 @@ def _signal_of(settable: Mapping[str, Settable], name: str) -> str:
 
 def _with_sampled(system: System, names: Sequence[str]) -> list[str]:
     """The inputs that are asked for, and those that only Python can give."""
-    sampled = [item.name for item in system.inputs if item.signal.sampling()]
-    return list(dict.fromkeys([*names, *sampled]))
+    settable = signals(system)
+    given = {number for name in names if name in settable for number in settable[name].numbers}
+    left = [number for number, item in enumerate(system.inputs) if item.signal.sampling() and number not in given]
+    owners = [next(name for name, one in reversed(settable.items()) if number in one.numbers) for number in left]
+    return list(dict.fromkeys([*names, *owners]))
 
 
 def _input(known: Channels, name: str, found: Settable, start: float) -> FmuVariable:
@@ -130,7 +135,12 @@ def _output(system: System, known: Channels, name: str) -> FmuVariable:
     found = known[name]
     if isinstance(found.evaluate, Mode):
         return FmuVariable(name, VariableKind.MODE, "1", about=MODE, form=found.evaluate)
-    follows = not len(system.prescribed_input) and found.evaluate.reads() <= _of_states(system)
+    # a speed without inertia follows torques at once
+    follows = (
+        not len(system.prescribed_input)
+        and not np.any(system.massless)
+        and found.evaluate.reads() <= _of_states(system)
+    )
     return FmuVariable(name, VariableKind.SIGNAL, found.unit, form=found.evaluate, follows_states=follows)
 
 
@@ -139,11 +149,15 @@ def _of_states(system: System) -> set[int]:
     return {place for name, _ in ROW if name in OF_STATES for place in range(places[name].start, places[name].stop)}
 
 
-def advice(made: Interface) -> Iterator[Problem]:
-    """What a master should know of the inputs of an FMU."""
+def advice(made: Interface, source: System) -> Iterator[Problem]:
+    """What a master should know of the inputs of an FMU; source, the System before its inputs were numbers."""
+    sampled = {item.name for item in source.inputs if item.signal.sampling()}
     speeds = {made.system.inputs[number].name for number in made.system.prescribed_input.tolist()}
     for _, one in made.of(VariableKind.INPUT):
         names = {made.system.inputs[number].name for number in one.inputs}
+        if names & sampled:
+            message = "is computed by a function of Python, which an FMU does not have: its start value is 0"
+            yield Problem(one.name, "", message, remedy="let the master set it from the start")
         if names & speeds:
             message = "prescribes a speed, which jumps from step to step where its value is held"
             remedy = "let the master give its rate too, as input derivative or der(...)"

@@ -41,5 +41,5 @@ def _library(path: Path) -> Library | None:
     short, ending = SYSTEMS[system]
     whole = "x86_64" if PROCESSORS[processor] == "64" else "aarch64"
     # FMI 2.0 has names for the processors of its time alone; tools that run elsewhere look for these
-    two = f"{short}64" if whole == "x86_64" else f"aarch64-{system}"
+    two = f"{short}64" if whole == "x86_64" or system == "darwin" else f"aarch64-{system}"
     return Library(path, ending, {"2.0": two, "3.0": f"{whole}-{system}"})

@@ -6,7 +6,7 @@ from collections.abc import Collection, Iterable, Iterator, Sequence
 from fnmatch import fnmatchcase
 from typing import Any
 
-from clutchwork.base.errors import near
+from clutchwork.base.errors import UseError, near
 from clutchwork.base.quote import listed, quote
 from clutchwork.fmu.variables import LeftOut
 from clutchwork.results.channels import Channel, Channels
@@ -17,6 +17,10 @@ def plain(names: Any) -> tuple[str, ...]:
     """Names from a string with commas, or from a sequence."""
     if isinstance(names, str):
         return tuple(part.strip() for part in names.split(",") if part.strip())
+    if not isinstance(names, Iterable) or not all(isinstance(name, str) for name in names):
+        raise UseError(
+            "cw.export_fmu", [f"{quote(names)} is not a list of names: give ['c1.pressure'] or 'c1.pressure'"]
+        )
     return tuple(names)
 
 

@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection, Iterator
+from collections import defaultdict
+from collections.abc import Collection, Iterator, Mapping
+from itertools import combinations
 from math import isnan, nan
 from numbers import Real
 
@@ -11,7 +13,9 @@ from clutchwork.assembly.system import System
 from clutchwork.fmu.variables import FmuVariable, LeftOut, Place, VariableKind
 
 BENDS = "it is fixed when the FMU is made: export one for each value"
+WHOLE = "it is a whole number, which is fixed when the FMU is made"
 NOTHING = "it acts on nothing in this driveline"
+EMPTY = "it has no value in this driveline"
 
 
 def parameters(system: System, taken: Collection[str]) -> Iterator[FmuVariable | LeftOut]:
@@ -19,31 +23,67 @@ def parameters(system: System, taken: Collection[str]) -> Iterator[FmuVariable |
 
     Parameters: taken, names of results, which a value at the start must not have.
     """
-    for name in system.parameters:
-        found = system.parameters[name]
-        if not isinstance(found.value, Real) or isinstance(found.value, bool) or found.inputs or isnan(found.value):
-            continue
+    known = {name: found for name in system.parameters if _is_number(found := system.parameters[name])}
+    reasons = {name: why for name, found in known.items() if (why := _reason(found))}
+    free = {name: found for name, found in known.items() if name not in reasons}
+    reasons |= _acting_together(free)
+    shared = _shared_words([found for name, found in free.items() if name not in reasons])
+    for name, found in known.items():
         called = f"{name}_start" if name in taken else name
-        if not found.reach:
-            yield LeftOut(called, NOTHING)
-            continue
-        slopes = found.slopes
-        if slopes is None:
-            yield LeftOut(called, BENDS)
-            continue
-        slope = [nan] * len(slopes) if found.is_word else slopes.tolist()
-        words = tuple(map(Place, found.words.tolist(), slope))
-        tunable = found.stays is None and found.is_word
-        yield FmuVariable(
-            called,
-            VariableKind.TUNABLE if tunable else VariableKind.FIXED,
-            found.unit,
-            float(found.value),
-            found.bounds,
-            found.about,
-            words=words,
-            params=_pool(system, found) if tunable else (),
-        )
+        yield LeftOut(called, reasons[name]) if name in reasons else _parameter(system, called, found, shared)
+
+
+def _is_number(found: SystemParameter) -> bool:
+    """Whether it is a number, or the place of one; signals are inputs."""
+    is_real = isinstance(found.value, Real) and not isinstance(found.value, bool)
+    return not found.inputs and (is_real or (found.value is None and found.is_plain))
+
+
+def _reason(found: SystemParameter) -> str:
+    """Why a number cannot be a parameter; empty where it can."""
+    if found.value is None or isnan(found.value):
+        return EMPTY
+    if not found.reach:
+        return NOTHING
+    if found.is_whole:
+        return WHOLE
+    return "" if found.slopes is not None else BENDS
+
+
+def _acting_together(free: Mapping[str, SystemParameter]) -> dict[str, str]:
+    """Numbers that reach the same words as others, where both together are not the sum of each alone."""
+    owners = defaultdict[int, list[str]](list)
+    for name, found in free.items():
+        for word in found.words.tolist():
+            owners[word].append(name)
+    pairs = dict.fromkeys(pair for names in owners.values() for pair in combinations(names, 2))
+    reasons = dict[str, str]()
+    for one, other in pairs:
+        if one not in reasons and other not in reasons and not free[one].adds_to(free[other]):
+            reasons[other] = f"it acts together with {one}: export an FMU for each value"
+    return reasons
+
+
+def _shared_words(found: Collection[SystemParameter]) -> set[int]:
+    """Words that several numbers reach."""
+    once, several = set[int](), set[int]()
+    for parameter in found:
+        words = set(parameter.words.tolist())
+        several |= words & once
+        once |= words
+    return several
+
+
+def _parameter(system: System, called: str, found: SystemParameter, shared: set[int]) -> FmuVariable:
+    slopes: list[float] = [] if found.slopes is None else found.slopes.tolist()
+    # a word of its own is the value itself, to the bit
+    alone = found.is_word and not shared & set(found.words.tolist())
+    words = tuple(map(Place, found.words.tolist(), [nan] * len(slopes) if alone else slopes))
+    tunable = found.stays is None and alone
+    kind = VariableKind.TUNABLE if tunable else VariableKind.FIXED
+    pool = _pool(system, found) if tunable else ()
+    value = float(found.value)
+    return FmuVariable(called, kind, found.unit, value, found.bounds, found.about, words=words, params=pool)
 
 
 def _pool(system: System, parameter: SystemParameter) -> tuple[Place, ...]:

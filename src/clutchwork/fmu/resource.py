@@ -20,7 +20,8 @@ from clutchwork.results.rows import numbers
 from clutchwork.run.failure import JAMS, covered, jam_of
 from clutchwork.run.simulation import acting
 
-MAGIC = b"CWFMU001"
+# the last digits are the version of this format
+MAGIC = b"CWFMU002"
 T = TypeVar("T")
 
 
@@ -74,7 +75,17 @@ def resource(made: Interface) -> Resource:
     head = ResourceWriter()
     head.integer(core().schema_hash())
     head.text(token)
+    head.integer(checksum(body))
     return Resource(token, MAGIC + head.content() + body)
+
+
+def checksum(data: bytes) -> int:
+    """A checksum of words of eight bytes, as interfaces/fmi/model.cpp computes it."""
+    found, whole = len(data), 2**64 - 1
+    for (word,) in struct.iter_unpack("<Q", data):
+        found = (found ^ word) * 0x9E3779B97F4A7C15 & whole
+        found ^= found >> 32
+    return found - 2**64 if found >> 63 else found
 
 
 def _body(made: Interface) -> bytes:
