@@ -130,6 +130,8 @@ MENDED: dict[str, list[int]] = {
     "a sign law that turned at events of another contact": [320124],
     "rows beside a sign that is taken at its word": [50238, 60458],
     "rows that are as good as their tolerance": [50556, 60301, 310153],
+    "a tooth that parts faster than it springs back": [2000230],
+    "a jump that was made twice where modes are decided again": [2000539],
 }
 
 

@@ -208,8 +208,10 @@ Status decide(Workspace<T>& ws, bool at_start) {
     ws.contact.impulse[c] = at_start;
     status = settle(ws, -1);
   }
-  if (status == Status::running && stops_short(ws, located)) {
-    if (!stop_within_tolerance(ws, located) || (stops && !collide(ws))) return Status::no_mode;
+  const bool much = status == Status::running && stops_much(ws, located, kinetic_energy(ws));
+  if (status == Status::running && (much || stops_short(ws, located))) {
+    if (!stop_within_tolerance(ws, located, much ? 0.0 : slip_tolerance(ws)) || (stops && !collide(ws)))
+      return Status::no_mode;
     see_speeds(ws);
     status = settle(ws, -1);
   }
@@ -240,15 +242,19 @@ void report_changes(Workspace<T>& ws, bool at_start, double energy_before) {
   }
 }
 
-/// What jumps at an instant: prescribed speeds while the ratios are still those before, then the ratios.
+/// Prescribed speeds jump while the ratios are still those before.
+template <class T>
+void jump_prescribed(Workspace<T>& ws) {
+  const BesideRatios<T> beside(ws, Written::before);
+  prescribed_jump(ws);
+}
+
+/// What jumps at an instant: prescribed speeds, then the ratios. It does so once, however often the modes are decided.
 template <class T>
 void jump(Workspace<T>& ws) {
-  if (ws.ratios.n == 0) return prescribed_jump(ws);
-  {
-    const BesideRatios<T> beside(ws, Written::before);
-    prescribed_jump(ws);
-  }
-  jump_ratios(ws, slip_tolerance(ws));
+  jump_prescribed(ws);
+  if (ws.ratios.n > 0) jump_ratios(ws, slip_tolerance(ws)), keep_ratios(ws);
+  keep_prescribed(ws);
 }
 
 /// Decide the modes at the present instant and report what changed.
