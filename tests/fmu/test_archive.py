@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import random
 import shutil
 import subprocess
 import zipfile
@@ -56,6 +57,14 @@ def test_a_resource_of_another_model_or_damaged_is_refused(six_speed: Fmu, tmp_p
     resource = tmp_path / "bad" / "resources" / "model.cw"
     for bad in (b"", whole[:100], whole[:-8], whole + bytes(8), whole[:8] + bytes(8) + whole[16:], b"x" * len(whole)):
         resource.write_bytes(bad)
+        with pytest.raises(Exception, match="nstantiate"):
+            moved.instance()
+    # any bit
+    source = random.Random(1)
+    for _ in range(60):
+        flipped = bytearray(whole)
+        flipped[source.randrange(80, len(whole))] ^= 1 << source.randrange(8)
+        resource.write_bytes(bytes(flipped))
         with pytest.raises(Exception, match="nstantiate"):
             moved.instance()
     resource.unlink()

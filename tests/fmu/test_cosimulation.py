@@ -152,3 +152,81 @@ def test_early_return_and_event_mode(six_speed: Fmu) -> None:
     assert stops
     assert run.get(SPEEDS) == pytest.approx(want, rel=1e-12)
     run.free()
+
+
+def ramped(made: Any, version: str) -> Fmu:
+    """A shaft of 1/3 kg m2 whose torque is an input."""
+    driveline = cw.Driveline("one")
+    shaft = driveline.shaft("shaft", inertia=1.0 / 3.0)
+    driveline.add(cw.Torque("drive", shaft=shaft, torque=0.0))
+    fmu: Fmu = made(driveline, inputs=["drive.torque"], version=version)
+    return fmu
+
+
+@pytest.mark.parametrize("version", ["2.0", "3.0"])
+@pytest.mark.parametrize("rate_first", [True, False])
+def test_the_order_of_value_and_rate_does_not_matter(made: Any, version: str, rate_first: bool) -> None:
+    """100 N m/s over 1 s on 1/3 kg m2 are 150 rad/s; a refused step keeps the rate."""
+    with ramped(made, version).running() as run:
+        if rate_first:
+            run.rate("drive.torque_signal", 100.0)
+            run.set("drive.torque", 0.0)
+        else:
+            run.set("drive.torque", 0.0)
+            run.rate("drive.torque_signal", 100.0)
+        with pytest.raises(Exception, match=r"status 3|Error"):
+            run.step(5.0, 1.0)
+        run.step(0.0, 1.0)
+        assert run.get(["shaft.speed"])[0] == pytest.approx(150.0, rel=1e-9)
+
+
+def test_a_rate_of_fmi_3_stays_until_it_is_set(made: Any) -> None:
+    with ramped(made, "3.0").running() as run:
+        run.rate("drive.torque_signal", 100.0)
+        for k in range(10):
+            run.set("drive.torque", 10.0 * k)
+            run.step(0.1 * k, 0.1)
+        assert run.get(["shaft.speed"])[0] == pytest.approx(150.0, rel=1e-9)
+
+
+def test_knots_inside_are_announced_and_both_sides_are_seen(made: Any) -> None:
+    """A torque of 6 N m up to 0.5 s, then 9, on 3 kg m2; in event mode the right limit is shown, also after a state."""
+    driveline = cw.Driveline("one")
+    shaft = driveline.shaft("shaft", inertia=3.0)
+    driveline.add(cw.Torque("drive", shaft=shaft, torque=cw.Table([(0, 6), (0.5, 6), (0.5, 9), (1, 9), (1, 6)])))
+    run = made(driveline, version="3.0").instance(event_mode=True)
+    run.begin({})
+    found = [run.raw.updateDiscreteStates()]
+    run.raw.enterStepMode()
+    run.step(0.0, 0.5)
+    assert run.get(["shaft.acceleration"]) == [2.0]
+    run.raw.enterEventMode()
+    assert run.get(["shaft.acceleration"]) == [3.0]
+    run.go_to(run.state())
+    assert run.get(["shaft.acceleration"]) == [3.0]
+    found.append(run.raw.updateDiscreteStates())
+    run.raw.enterStepMode()
+    run.step(0.5, 0.5)
+    run.raw.enterEventMode()
+    found.append(run.raw.updateDiscreteStates())
+    assert [flags[-1] for flags in found[:2]] == [0.5, 1.0]
+    assert [flags[-2] for flags in found] == [True, True, False]
+    run.free()
+
+
+def test_a_budget_that_is_too_small_ends_the_step(made: Any) -> None:
+    driveline = cw.Driveline("swings")
+    engine, load = driveline.shaft("engine", inertia=1.0, speed=10.0), driveline.shaft("load", inertia=1.0)
+    driveline.add(cw.SpringDamper("shaft", base=engine, follower=load, stiffness=1e4, damping=0.1))
+    driveline.simulation["max_steps"] = 20
+    run = made(driveline).instance()
+    run.begin({})
+    with pytest.raises(Exception, match=r"status 3|Error"):
+        run.step(0.0, 10.0)
+    assert "budget" in run.messages[-1][2]
+    run.free()
+
+
+def test_an_fmu_without_outputs_is_valid(tmp_path: Any) -> None:
+    path = cw.Driveline.load(SIX_SPEED).to_fmu(tmp_path / "none.fmu", outputs=[], picture=False)
+    assert validate_fmu(str(path)) == []

@@ -84,3 +84,37 @@ def test_a_prescribed_speed_is_warned_of(tmp_path: Any) -> None:
     driveline.add(cw.SpringDamper("shaft", base=engine, follower=load, stiffness=100.0, damping=1.0))
     with pytest.warns(cw.ModelWarning, match="rate"):
         driveline.to_fmu(tmp_path / "a.fmu", inputs=["source.speed"], picture=False)
+
+
+def raised(one: Any) -> float:
+    """Another value of a parameter, within its bounds."""
+    value = 1.3 * float(one.start) or 0.01
+    return value if one.max is None or value <= float(one.max) else 0.7 * float(one.start)
+
+
+@pytest.mark.parametrize("example", ["car_launch", "engine_clutch_vehicle", "launch", "six_speed"])
+def test_all_parameters_together_act_as_an_assembly_with_them(tmp_path: Any, example: str) -> None:
+    """Numbers that share words of the System add up, or are not offered."""
+    driveline = cw.Driveline.load(SIX_SPEED.parents[1] / example / "model.toml")
+    fmu = Fmu(driveline.to_fmu(tmp_path / "one.fmu", picture=False), tmp_path / "unpacked")
+    chosen = {**parameters(fmu, "tunable"), **parameters(fmu, "fixed")}
+    # the static coefficient stays above the others, and start speeds fit their gears
+    values = {n: raised(one) for n, one in chosen.items() if "friction" not in n and not n.endswith("_start")}
+    system = driveline.assemble()
+    pinned = cw.System.of(system.source, system.independent)
+    sim = cw.Simulator(pinned.changed({name.replace("'", ""): value for name, value in values.items()}))
+    seen = [n for n, one in fmu.variables.items() if one.causality == "output" and n.endswith((".speed", ".torque"))]
+    sim.advance(0.3)
+    with fmu.running(values) as run:
+        run.step(0.0, 0.3)
+        got = np.array(run.get(seen))
+    want = np.array([sim[name.replace("'", "")] for name in seen])
+    # words are sums in another order; stiff shafts make 1e-7 of that
+    assert np.all(np.abs(got - want) <= 1e-6 * np.maximum(np.abs(want), 1.0))
+
+
+def test_whole_numbers_are_left_out(tmp_path: Any) -> None:
+    with pytest.raises(cw.UseError, match="whole number"):
+        cw.Driveline.load(SIX_SPEED.parents[1] / "car_launch" / "model.toml").to_fmu(
+            tmp_path / "a.fmu", parameters=["clutch.surfaces"], picture=False
+        )

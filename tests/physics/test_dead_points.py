@@ -81,3 +81,19 @@ def test_two_cams_that_start_alike_go_on() -> None:
     assert run.status == "done"
     # of the speeds, what their tolerance of 1e-6 makes of one
     assert run["one.speed"] == pytest.approx(run["other.speed"], rel=1e-5)
+
+
+def test_a_cam_that_is_held_right_behind_its_dead_point() -> None:
+    """The surface has no speed to speak of where it meets the follower; the shaft stops for good, with its energy."""
+    d = cw.Driveline("press")
+    shaft, mass = d.shaft("shaft", inertia=1.0), d.mass("mass", mass=1.0)
+    d.add(cw.Torque("drive", shaft=shaft, torque=1.0))
+    lift = [(0.0, 0.0), (pi / 2, 0.0157), (3 * pi / 2, 0.0157), (2 * pi, 0.0)]
+    d.add(cw.Cam("cam", shaft=shaft, mass=mass, lift=lift, initial_gap=1e-14))
+    d.add(cw.PrescribedSpeed("held", shaft=mass, speed=0.0))
+    run = d.simulate(0.01)
+    assert run.status == "done"
+    (event,) = run.events
+    assert event.energy_before == pytest.approx(0.5 * event.time**2, rel=1e-6)
+    assert event.energy_after <= 1e-12 * event.energy_before
+    assert abs(run.energy.residual) <= 1e-6 * event.energy_before

@@ -80,3 +80,21 @@ def test_a_conductor_too_cold_for_its_coefficient_is_a_mistake():
     _brake(d, d.shaft("s", inertia=1.0, speed=4.0), temperature_coefficient=0.01, temperature=COLD - 100.0)
     with pytest.raises(cw.ModelError, match=r"temperature is .* K, not above .* K.*give a higher one"):
         d.assemble()
+
+
+def test_a_signal_that_falls_below_it_is_one_too():
+    d = cw.Driveline()
+    temperature = cw.Step(height=100.0, start=0.1, offset=COLD - 100.0)
+    _brake(d, d.shaft("s", inertia=1.0, speed=4.0), temperature_coefficient=0.01, temperature=temperature)
+    with pytest.raises(cw.ModelError, match=r"temperature is .* K, not above .* K.*give a higher one"):
+        d.assemble()
+
+
+def test_a_node_that_is_too_cold_leaves_it_no_resistance():
+    """Its peak is at rest then, and no torque is left at a speed; it does not drive."""
+    d = cw.Driveline()
+    cold = d.ambient("cold", temperature=COLD - 100.0)
+    _brake(d, d.shaft("s", inertia=1.0, speed=4.0), temperature_coefficient=0.02, heat=cold)
+    run = d.simulate(0.1)
+    assert np.all(run["b.torque"] == 0.0)
+    assert run["s.speed"][-1] == 4.0

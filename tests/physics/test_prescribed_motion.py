@@ -189,3 +189,27 @@ def test_an_acceleration_begins_with_the_speed_behind_a_gear(ratio: float, based
     run = d.simulate(0.5)
     assert run["b.speed"][0] == pytest.approx(3.0 / ratio, rel=1e-12)
     assert at_end(run, "b.speed") - based * at_end(run, "c.speed") == pytest.approx(3.0 / ratio - based + 2.0, rel=1e-9)
+
+
+def test_a_jump_is_made_once_where_a_shaft_without_inertia_follows_it() -> None:
+    """Its jump has the modes decided again; what has inertia must not jump again, nor the work of the source."""
+    d = cw.Driveline("jump")
+    carrier, light = d.shaft("carrier", inertia=2.0), d.shaft("light", inertia=0.0)
+    left, right = d.shaft("left", inertia=0.3), d.shaft("right", inertia=0.1)
+    d.add(cw.OpenDifferential("split", carrier=carrier, left=left, right=right))
+    d.add(cw.Damper("one", base=carrier, follower=light, damping=1.0))
+    d.add(cw.Damper("other", base=d.housing, follower=light, damping=1.0))
+    # somewhere a contact, so that modes are decided
+    law = cw.Coulomb(static=0.1, kinetic=0.1)
+    d.add(cw.Brake("brake", shaft=d.shaft("rests", inertia=1.0), friction=law, gain=1.0, normal_force=1.0))
+    d.add(cw.PrescribedSpeed("motor", shaft=carrier, speed=cw.Step(height=6.0, start=0.1)))
+    run = d.simulate(0.2, **TIGHT)
+    # equal impulses on both sides, which add up to twice the jump of the carrier
+    assert at_end(run, "left.speed") == pytest.approx(2 * 6.0 * 0.1 / 0.4, rel=1e-9)
+    assert at_end(run, "right.speed") == pytest.approx(2 * 6.0 * 0.3 / 0.4, rel=1e-9)
+    assert at_end(run, "light.speed") == pytest.approx(3.0, rel=1e-9)
+    # of dampers in series for 0.1 s, besides what has been set in motion
+    heat = 0.5 * 6.0**2 * 0.1
+    kinetic = 0.5 * (2.0 * 6.0**2 + 0.3 * 3.0**2 + 0.1 * 9.0**2)
+    assert run.energy.sources == {"motor": pytest.approx(kinetic + heat, rel=1e-9)}
+    assert abs(run.energy.residual) <= 1e-9 * kinetic

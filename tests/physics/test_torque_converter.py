@@ -184,6 +184,22 @@ def test_coupling_in_all_quadrants(base: float, follower: float) -> None:
     assert run.energy.heat["c"] == pytest.approx(0.1 * k * fast**2 * abs(base - follower), rel=1e-9, abs=1e-12)
 
 
+@pytest.mark.parametrize("lag", [0.0, 1e-4])
+def test_a_turbine_that_turns_around_beside_a_standing_impeller(lag: float) -> None:
+    """It turns back free, and is braked by the square of its speed from rest on: there is no ratio of speeds there."""
+    inertia, torque, back = 0.01, 50.0, 20.0
+    d = cw.Driveline("standing")
+    shaft = d.shaft("s", inertia=inertia, speed=-back)
+    d.add(cw.Torque("drive", shaft=shaft, torque=torque))
+    d.add(cw.TorqueConverter("tc", impeller=d.housing, turbine=shaft, lag=lag, **TABLES))
+    rest, top = inertia * back / torque, (torque / CAPACITY[0]) ** 0.5
+    end = rest + 0.02
+    run = d.simulate(end, times=[rest / 2, end], **TIGHT)
+    speeds = [-back / 2, top * np.tanh(0.02 * torque / (inertia * top))]
+    # a lag shifts the speed by about as long
+    assert run["s.speed"] == pytest.approx(speeds, rel=1e-9 if lag == 0.0 else 0.02)
+
+
 @pytest.mark.parametrize(
     ("changes", "word"),
     [

@@ -244,3 +244,20 @@ def test_a_jump_beside_a_prescribed_shaft_is_work_of_its_source(to, side):
     assert run["a.speed"][-1] == pytest.approx(to * run["b.speed"][-1], rel=1e-12)
     # to the tolerance of the work
     np.testing.assert_allclose(run["motion.work"], energy, rtol=0, atol=1e-6 * energy.max())
+
+
+@pytest.mark.parametrize("start", [0.0, 0.2])
+def test_it_slips_between_the_housing_and_a_prescribed_shaft(start):
+    """At ratio 0 it holds the housing; where the ratio leaves zero nothing can hold."""
+    d = cw.Driveline("prescribed")
+    shaft = d.shaft("s", inertia=1.0)
+    ratio = cw.Table([(start, 0.0), (start + 0.5, 1.0)])
+    d.add(cw.VariableRatio("v", input=d.housing, output=shaft, ratio=ratio, capacity=3.0))
+    d.add(cw.PrescribedSpeed("motor", shaft=shaft, speed=5.0))
+    end = start + 0.5
+    run = d.simulate(end, **TIGHT)
+    assert run.status == "done"
+    assert run["v.slip"][-1] == pytest.approx(-5.0, rel=1e-9)
+    assert abs(run["v.torque"][-1]) == pytest.approx(3.0, rel=1e-9)
+    # capacity times the integral of the slip
+    assert run.energy.heat["v"] == pytest.approx(3.0 * 0.5 * 5.0 * 0.5, rel=1e-7)

@@ -130,6 +130,14 @@ MENDED: dict[str, list[int]] = {
     "a sign law that turned at events of another contact": [320124],
     "rows beside a sign that is taken at its word": [50238, 60458],
     "rows that are as good as their tolerance": [50556, 60301, 310153],
+    "a tooth that parts faster than it springs back": [2000230],
+    "a jump that was made twice where modes are decided again": [2000539],
+    "a slip that a ratio drives between prescribed speeds": [3003594],
+    "a motor that is held at rest, and one that breaks away": [3002445, 3002327],
+    "a gear whose friction feeds its own load more and more": [2000824],
+    "a converter whose impeller is the housing": [3002496],
+    "a slip that stops within its band and goes on": [3000114],
+    "a joint that leaves its support to nothing": [2000171, 3005097],
 }
 
 

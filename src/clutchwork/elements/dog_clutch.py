@@ -57,9 +57,11 @@ class DogClutch(Heating):
         return (angle, 1.0 if self.engaged else 0.0)
 
     def stored(self, states: Sequence[float], torque: float) -> float:
-        """Energy of the flank that is pressed [J]; none where there is no torque, whatever the angle."""
+        """Energy of the flank that is pressed [J], also while it parts too fast to push; none out of mesh."""
         depth = max(abs(states[0]) - self.gap / 2, 0.0)
-        return 0.5 * self.stiffness * depth**2 if torque else 0.0
+        # out of mesh the sleeve is not beyond the tips, but for round-off
+        in_mesh = torque != 0.0 or states[1] > self.reach + 1e-9
+        return 0.5 * self.stiffness * depth**2 if in_mesh else 0.0
 
 
 def gap_problems(gap: float, teeth: int) -> Found:

@@ -2,8 +2,11 @@
 
 from __future__ import annotations
 
-from clutchwork.declare import Found, Node, Role, SignalLike, component, param, port, signal
+from math import inf
+
+from clutchwork.declare import Found, Node, Role, Signal, SignalLike, component, param, port, signal
 from clutchwork.elements.bases.heating import Heating
+from clutchwork.signals.bases.extremes import extremes
 
 
 @component(Role.TORQUE)
@@ -38,10 +41,12 @@ class EddyCurrentBrake(Heating):
     def problems(self) -> Found:
         if self.temperature_coefficient == 0.0:
             return []
-        # the coldest that is known in advance; below that the law has no resistance left, and would drive
-        coldest = self.reference_temperature - 1.0 / self.temperature_coefficient
-        if isinstance(self.temperature, int | float) and self.temperature <= coldest:
-            fault = f"is {self.temperature:g} K, not above {coldest:g} K, where no resistance is left"
+        # the coldest that is known in advance
+        coldest, given = self.reference_temperature - 1.0 / self.temperature_coefficient, self.temperature
+        known = [reached.value for reached in extremes(given)] if isinstance(given, Signal) else [given]
+        lowest = min((value for value in known if isinstance(value, int | float)), default=inf)
+        if lowest <= coldest:
+            fault = f"is {lowest:g} K, not above {coldest:g} K, where no resistance is left"
             return [("temperature", fault, "give a higher one, or a smaller coefficient")]
         if self.temperature is not None or self.heat is not None:
             return []

@@ -30,8 +30,8 @@ JAMS = {
     "stop": ("prescribed speeds go beyond a stop", ""),
     "ratio": ("prescribed or initial speeds break the ratio of a transmission", ""),
     "light": (
-        "the ratio is zero, and nothing else determines the speed of the shaft without inertia behind it",
-        "give that shaft inertia, or keep the ratio away from zero",
+        "at its ratio nothing determines the speed of the shaft without inertia beside it",
+        "give that shaft inertia, or keep the ratio away from there: from zero, or from one if it is the support",
     ),
 }
 

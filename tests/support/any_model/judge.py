@@ -13,6 +13,7 @@ from clutchwork.assembly.wiring import HOUSING
 from clutchwork.run.failure import JAMS
 from support.any_model import agree, rows
 from support.any_model.seen import Fault
+from support.any_model.signals import sides
 from support.any_model.values import Plain
 
 # how a run may end early where there is a cause, by what must be in the model
@@ -23,7 +24,9 @@ LOST = 1e9
 OF_TOLERANCE = ("integral", "balance massless", "creeps")
 # of its largest ratio, one at a dead point: a crank or a cam that starts there and is held stops within a step of it
 DEAD = 1e-3
-# of a speed behind a ratio that vanishes, the one before it: the last row is a step short of the zero
+# s before a ratio that loses a speed, within which steps may collapse
+SOON = 1e-4
+# of the speed of a shaft that a row loses, what is left in it: the last row is a step short of that
 VANISHED = 1e-2
 
 
@@ -94,18 +97,36 @@ def ending(made: Plain, base: Any) -> list[Fault]:
 
 
 def is_told(base: Any) -> bool:
-    """Whether a jam is told by one of its sentences, and that of a ratio that vanishes before a shaft without inertia
-    where it is so: the transmission that is named joins such a shaft, and one that stands."""
+    """Whether a jam is told by one of its sentences, and that of a ratio that leaves a shaft without inertia to nothing
+    where it is so: the transmission that is named joins such a shaft, and its row has lost the speed of that."""
     if JAMS["light"][0] not in base.message:
         return any(sentence in base.message for sentence, _ in JAMS.values())
     nodes = base.wiring.nodes
     ways = [branch for branch in base.wiring.elements if repr(branch.component.name) in base.message]
-    light = any(nodes[node].inertia == 0 for branch in ways for node in branch.direction if node != HOUSING)
+    light = {node for branch in ways for node in branch.direction if node != HOUSING and nodes[node].inertia == 0}
     if not light or not len(base.rows):
-        return light
+        return bool(light)
+    if len(ways) != 2:
+        return False
     speed = base.rows[-1, base.wiring.columns["speed"]]
-    rates = [sum(f * speed[node] for node, f in branch.direction.items() if node != HOUSING) for branch in ways]
-    return len(rates) == 2 and bool(abs(rates[0]) <= VANISHED * abs(rates[1]))
+    front, back = (sum(f * speed[node] for node, f in branch.direction.items() if node != HOUSING) for branch in ways)
+    # what is left of the speed of such a shaft in the row, at the ratio of both rates; where that is a signal, also
+    # behind a jump of it, and soon
+    ratio = getattr(ways[0].component, "ratio", None)
+    given = sides(ratio, base.time[-1]) + sides(ratio, base.time[-1] + SOON) if isinstance(ratio, cw.Signal) else ()
+    for node in light:
+        coming = [_left(ways, node, value, 1.0) for value in given]
+        least = min(abs(share) for share in [_left(ways, node, front, back), *coming])
+        if least <= VANISHED or (coming and min(coming) < 0.0 < max(coming)):
+            return True
+    return False
+
+
+def _left(ways: list[Any], node: int, front: float, back: float) -> float:
+    """Share of a speed in the row `back` times the first rate less `front` times the second, of the larger one."""
+    first, second = (back * ways[0].direction.get(node, 0.0), front * ways[1].direction.get(node, 0.0))
+    size = max(abs(back), abs(front)) * max(abs(way.direction.get(node, 0.0)) for way in ways)
+    return (first - second) / size if size else 0.0
 
 
 def at_dead_point(base: Any) -> bool:

@@ -31,8 +31,8 @@ LEAST = 6
 
 def faults(run: Any) -> list[Fault]:
     """All that is wrong with the rows of a run."""
-    if len(run) < LEAST:
-        return [Fault("times", "", "few rows")] if run.status == "done" else []
     seen = Seen(run)
+    if len(seen.time) < LEAST:
+        return [Fault("times", "", "few rows")] if run.status == "done" else []
     with np.errstate(all="ignore"):
         return [fault for check in CHECKS for fault in check(seen)]

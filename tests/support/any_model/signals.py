@@ -11,12 +11,13 @@ import clutchwork as cw
 BESIDE = 1e-12
 
 
-def sides(signal: Any, time: float) -> tuple[float, float]:
-    """Value of a signal just before and just behind an instant."""
+def sides(signal: Any, time: float) -> tuple[float, float, float]:
+    """Value of a signal just before an instant, at it, and just behind it."""
     if not isinstance(signal, cw.Signal):
-        return float(signal), float(signal)
-    before, behind = (_value(signal, time + side * BESIDE * max(1.0, time)) for side in (-1.0, 1.0))
-    return before, behind
+        return float(signal), float(signal), float(signal)
+    # at a knot at which it turns around both neighbours are on one side of its own value
+    before, here, behind = (_value(signal, time + side * BESIDE * max(1.0, time)) for side in (-1.0, 0.0, 1.0))
+    return before, here, behind
 
 
 def _value(signal: cw.Signal, at: float) -> float:

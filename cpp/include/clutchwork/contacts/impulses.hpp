@@ -106,9 +106,9 @@ int impulse_contacts(const Workspace<T>& ws, Stops&& stops, int* list) {
 }
 
 /// The impulses that change the kinetic energy least: some contacts come to rest, no freewheel turns backward; those
-/// that had to stop lock. docs/theory/contacts.md (15)
+/// that had to stop lock. Slips up to `still` need none. docs/theory/contacts.md (15)
 template <class T, class Stops>
-bool least_impulses(Workspace<T>& ws, Stops&& stops) {
+bool least_impulses(Workspace<T>& ws, double still, Stops&& stops) {
   const int ne = int(ws.sys.elements);
   const double tolerance = slip_tolerance(ws);
   int* list = ws.decision.list;
@@ -116,7 +116,7 @@ bool least_impulses(Workspace<T>& ws, Stops&& stops) {
   bool needed = false;
   for (int a = 0; a < n; ++a) {
     const double slip = value(rate_of(ws, ne + list[a]));
-    needed = needed || slip * free_way(ws, list[a]) < -tolerance || (stops(list[a]) && abs(slip) > tolerance);
+    needed = needed || slip * free_way(ws, list[a]) < -tolerance || (stops(list[a]) && abs(slip) > still);
   }
   if (!needed) return true;
   BoundedProblem<T> p = gather(ws, list, n);
@@ -143,7 +143,7 @@ bool least_impulses(Workspace<T>& ws, Stops&& stops) {
 /// Impulses at a decision: contacts declared locked, at the start, and freewheels that would run backward.
 template <class T>
 bool settle_impulses(Workspace<T>& ws, bool at_start) {
-  return least_impulses(ws, [&](int c) { return at_start && ws.sys.contact_initial[c] == 1; });
+  return least_impulses(ws, slip_tolerance(ws), [&](int c) { return at_start && ws.sys.contact_initial[c] == 1; });
 }
 
 /// Whether a contact has locked while it still slips within its own tolerance.
@@ -152,20 +152,32 @@ bool stops_short(const Workspace<T>& ws, int located) {
   return located >= 0 && ws.contact.mode[located] == locked && ws.sys.contact_tolerance[located] > 0;
 }
 
+/// Whether a contact has locked with a slip that counts as zero, but moves an inertia whose energy does not: beside a
+/// dead point a shaft turns while what it drives stands. docs/theory/contacts.md, rule 9
+template <class T>
+bool stops_much(const Workspace<T>& ws, int located, double energy) {
+  constexpr double least = 1e-10;
+  if (located < 0 || ws.contact.mode[located] != locked || is_rigid(ws, located)) return false;
+  const int d = int(ws.sys.elements) + located;
+  const double slip = value(rate_of(ws, d));
+  return 0.5 * slip * slip > least * energy * value(ws.geometry.own[d]);
+}
+
 /// A contact that may lock below a slip of its own is stopped by an impulse; the others that are locked stay so, but
 /// for freewheels, which transmit no impulse that pulls.
 template <class T>
-bool stop_within_tolerance(Workspace<T>& ws, int located) {
+bool stop_within_tolerance(Workspace<T>& ws, int located, double still) {
   return least_impulses(
-      ws, [&](int c) { return ws.contact.mode[c] == locked && (c == located || !contact_one_way(ws, c)); });
+      ws, still, [&](int c) { return ws.contact.mode[c] == locked && (c == located || !contact_one_way(ws, c)); });
 }
 
 /// A contact that follows a load and jams stops at once; the others that are locked stay so, but for freewheels.
 /// docs/theory/load-dependent.md, rule 4
 template <class T>
 bool stop_jammed(Workspace<T>& ws, int jammed) {
-  return least_impulses(
-      ws, [&](int c) { return c == jammed || (ws.contact.mode[c] == locked && !contact_one_way(ws, c)); });
+  return least_impulses(ws, slip_tolerance(ws), [&](int c) {
+    return c == jammed || (ws.contact.mode[c] == locked && !contact_one_way(ws, c));
+  });
 }
 
 /// Transmissions keep their rates together while prescribed speeds jump; x: mass-weighted.

@@ -192,13 +192,14 @@ bool varies(const Workspace<T>& ws, int c) {
 }
 
 /// As list_independent beside transmissions, which come before all contacts: those whose directions vary are the last.
+/// One that prescribed speeds turn through a transmission is none of them: its slip moves with the ratio.
 template <class T>
 void list_independent_beside(Workspace<T>& ws, int n) {
   Held<T>& h = ws.held;
   h.n = 0;
   for (int varying = 0; varying < 2; ++varying) {
     for (int a = 0; a < n; ++a) {
-      const bool rigid = value(ws.ratios.whole[ws.sys.elements + h.all[a]]) == 0;
+      const bool rigid = varying == 0 && value(ws.ratios.whole[ws.sys.elements + h.all[a]]) == 0;
       if ((h.number[a] < 0 && !rigid) || int(varies(ws, h.all[a])) != varying) continue;
       h.number[a] = h.n;
       h.contact[h.n++] = h.all[a];

@@ -196,7 +196,7 @@ bool collide(Workspace<T>& ws) {
   if (!collide_all(ws, any)) return false;
   if (!any) return true;
   close_stops(ws);
-  return least_impulses(ws, [&](int c) { return lingers(ws, c, tolerance); }) && collide_all(ws, any);
+  return least_impulses(ws, tolerance, [&](int c) { return lingers(ws, c, tolerance); }) && collide_all(ws, any);
 }
 
 /// Stops that a decision has not locked are open, unless prescribed speeds drive them on.

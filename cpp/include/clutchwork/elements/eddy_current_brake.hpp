@@ -17,8 +17,15 @@ struct EddyCurrentBrake : declared::EddyCurrentBrake {
   template <class T, class S>
   static S torque(const Params<T>& p, const At<S>& at) {
     const S warmer = at.input[Input::temperature] - S(p.reference_temperature);
-    const S x = at.rate / (p.nominal_speed * (S(1) + p.temperature_coefficient * warmer));
-    return p.nominal_torque * x * T(-2) / (S(1) + x * x);
+    const S resistance = S(1) + p.temperature_coefficient * warmer;
+    // without resistance its peak is at rest, and nothing is left beyond that
+    return choose(
+        value(resistance) > 0,
+        [&] {
+          const S x = at.rate / (p.nominal_speed * resistance);
+          return p.nominal_torque * x * T(-2) / (S(1) + x * x);
+        },
+        [] { return S(0); });
   }
   template <class T, class S>
   static void state_rates(const Params<T>&, const At<S>&, S*) {}

@@ -162,8 +162,9 @@ struct MotorTorque : declared::MotorTorque {
       const S brakes = value_in_cell(grid.count, x.cell, share, [&](int i) { return generator[i]; });
       const S warm = at.input[Input::temperature];
       const S left = held_value(p.derating, at.points, warm, warmths(p) > 1 ? x.warmth : 0);
-      // at rest either way drives, whichever piece it came from
-      const bool rests = value(at.rate) == 0, forth = rests || x.side > 0, back = rests || x.side < 0;
+      // at rest, but for round-off, either way drives, whichever piece it came from
+      const double round_off = 1e-14 * value(grid[grid.count - 1]);
+      const bool rests = abs(value(at.rate)) <= round_off, forth = rests || x.side > 0, back = rests || x.side < 0;
       up = left * (forth ? drives : brakes), down = left * (back ? drives : brakes);
       up_power = left * S(forth ? p.motor_power : p.generator_power);
       down_power = left * S(back ? p.motor_power : p.generator_power);

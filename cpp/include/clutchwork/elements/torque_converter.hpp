@@ -137,7 +137,8 @@ struct TorqueConverter : declared::TorqueConverter {
   static S multiplied(const Params<T>& p, const At<S>& at) {
     const List ratios = list_of(p.speed_ratio, at.points);
     const S& w = at.rates[Way::impeller];
-    if (at.piece >= ratios.count || rests(at) || is_leaving(at)) return S(1);
+    // beside an impeller that is held still there is no ratio either
+    if (at.piece >= ratios.count || vanishes(w) || rests(at) || is_leaving(at)) return S(1);
     const List m = list_of(p.torque_ratio, at.points);
     return over_ratio(ratios, at.piece, at.rates[Way::slip] / w, [&](int k) { return m[k]; });
   }

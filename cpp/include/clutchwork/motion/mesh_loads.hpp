@@ -114,6 +114,23 @@ bool is_balanced(const Workspace<T>& ws) {
   return positive;
 }
 
+/// The contact that slips with a load whose torque grows beyond all bounds where it was evaluated last, for its own
+/// friction feeds it: the determinant of their system has come down to zero; -1: none. docs/theory/load-dependent.md,
+/// rule 4
+template <class T>
+int runs_away(const Workspace<T>& ws) {
+  constexpr double much = 1e3;
+  const int m = ws.loads.n_sliding;
+  int found = -1;
+  double largest = much;
+  for (int i = 0; i < m; ++i) {
+    // the factor has the inverses of its pivots
+    const double inverse = abs(value(ws.full.plain.coupling[i * m + i]));
+    if (inverse > largest) largest = inverse, found = int(ws.sys.load_contact[ws.loads.sliding[i]]);
+  }
+  return found;
+}
+
 /// Size of the torques of the branches where they were looked at last.
 template <class T>
 double torque_size(const Workspace<T>& ws) {

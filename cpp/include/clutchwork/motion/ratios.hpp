@@ -459,10 +459,11 @@ int passed_over(const Ratios<T>& r) {
   return -1;
 }
 
-/// A transmission that, from the point that was evaluated last, reaches such a ratio at once; -1: none.
+/// A transmission that, from the point that was evaluated last, reaches such a ratio at once; -1: none. Asked where
+/// steps have collapsed, which they may do well before.
 template <class T>
 int passes_at_once(const Ratios<T>& r) {
-  constexpr double soon = 1e-7;
+  constexpr double soon = 1e-4;
   for (int a = 0; a < r.n; ++a) {
     if (r.column[a] < 0) continue;
     const double second = value(r.follows[(2 * a + 1) * r.n + a]);

@@ -98,6 +98,7 @@ class Phase : public StepSize<typename Form::Scalar> {
         lost = passes_at_once(ratios);
       }
       if (lost >= 0) return jam(lost);
+      if (ws_.loads.n_sliding > 0 && stops_running_away()) return;
     }
     blame(form_, step_);
     leave(ws_.detail.component >= 0 || !(error_ <= 1e300) ? Status::not_finite : Status::step_collapse);
@@ -320,6 +321,21 @@ class Phase : public StepSize<typename Form::Scalar> {
 
   void reject() {
     if (!shorten()) collapse();
+  }
+
+  /// A gear whose torque grows beyond all bounds jams. Whether one does.
+  bool stops_running_away() {
+    evaluate(form_, ws_.time, step_.y0(), step_.slope());
+    const int c = runs_away(ws_);
+    if (c < 0 || events_crowd(ws_, int(ws_.sys.elements) + c)) return false;
+    rest_step(form_, step_);
+    export_state(form_, step_.y0());
+    note_before(form_, step_, 0.0);
+    keep_prescribed(ws_), keep_ratios(ws_);
+    ws_.loads.jammed = c;
+    ws_.last_step = 0;
+    decide(Cause::jam, c);
+    return true;
   }
 
   /// A transmission whose speeds are prescribed otherwise than its ratio says.

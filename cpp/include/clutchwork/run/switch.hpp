@@ -67,17 +67,34 @@ bool takes_back_stops(Workspace<T>& ws) {
   return any;
 }
 
-/// Whether the torque of an element jumps between two of its pieces at the present rate.
+/// Whether the torque of an element jumps between two of its pieces at the present rate, or right beside it: at rest
+/// both may have that of rest.
 template <class T>
-bool jumps_between(Workspace<T>& ws, int d, int piece, int other) {
-  constexpr double least = 1e-9;
+bool jumps_between(Workspace<T>& ws, int d, int piece, int side) {
   Branch<T> b = make_branch(ws, d, 0);
-  auto torque = [&](int at) {
-    b.piece = at;
-    return value(branch_torque_once(ws, b, rate_of(ws, d), ws.state, ws.observed.state_rates));
+  auto jumps = [&](const T& rate, double least) {
+    auto torque = [&](int at) {
+      b.piece = at;
+      return value(branch_torque_once(ws, b, rate, ws.state, ws.observed.state_rates));
+    };
+    const double here = torque(piece), there = torque(piece + side);
+    return abs(there - here) > least * larger(abs(here), abs(there));
   };
-  const double here = torque(piece), there = torque(other);
-  return abs(there - here) > least * larger(abs(here), abs(there));
+  const T rate = rate_of(ws, d);
+  return jumps(rate, 1e-9) || jumps(rate + T(side * slip_tolerance(ws)), 1e-6);
+}
+
+/// How a contact that is at its limit and starts to slip moves direction d, however little there is to move it yet.
+template <class T>
+double breaks_away(Workspace<T>& ws, int d) {
+  const int c = ws.event_context.contact, nv = int(ws.sys.speeds);
+  if (c < 0 || ws.event_context.cause != Cause::torque_limit) return 0;
+  const int sign = ws.contact.mode[c];
+  if (sign != forward && sign != backward) return 0;
+  T* x = ws.decision.speed;
+  for (int i = 0; i < nv; ++i) x[i] = T(0);
+  ws.geometry.mass_weighted.add(int(ws.sys.elements) + c, T(sign), x);
+  return value(ws.geometry.mass_weighted.times(d, x));
 }
 
 /// The piece that element d enters in the motion that was decided, of which decision.motion is the acceleration: the
@@ -90,8 +107,9 @@ int entered_piece(Workspace<T>& ws, int d) {
   for (int side = -1; side <= 1; side += 2) {
     const int i = side < 0 ? interval - 1 : interval;
     if (i < 0 || i >= edges || abs(rate - value(edge_at(ws, d, i))) > zero) continue;
-    const bool leaves = side * value(acceleration_along(ws, d, ws.decision.motion)) > noise;
-    if (leaves && jumps_between(ws, d, piece, piece + side)) return piece + side;
+    const double leaving = side * value(acceleration_along(ws, d, ws.decision.motion));
+    const bool leaves = leaving > noise || (leaving >= -noise && side * breaks_away(ws, d) > 0);
+    if (leaves && jumps_between(ws, d, piece, side)) return piece + side;
   }
   return piece;
 }
@@ -196,8 +214,8 @@ Status decide(Workspace<T>& ws, bool at_start) {
   if (!settle_impulses(ws, at_start) || (stops && !collide(ws))) return Status::no_mode;
   if (located >= 0 && is_struck_off(ws, located, slip)) located = -1;
   see_speeds(ws);
-  for (int c = 0; at_start && c < ws.sys.contacts; ++c) {
-    ws.contact.impulse[c] = ws.contact.mode[c] == locked && ws.event_context.mode[c] != locked;
+  for (int c = 0; c < ws.sys.contacts; ++c) {
+    ws.contact.impulse[c] = at_start && ws.contact.mode[c] == locked && ws.event_context.mode[c] != locked;
   }
   Status status = ws.loads.jammed < 0 ? settle(ws, located) : Status::unbalanced;
   for (int round = 0; status == Status::unbalanced && round < ws.sys.loads; ++round) {
@@ -208,10 +226,13 @@ Status decide(Workspace<T>& ws, bool at_start) {
     ws.contact.impulse[c] = at_start;
     status = settle(ws, -1);
   }
-  if (status == Status::running && stops_short(ws, located)) {
-    if (!stop_within_tolerance(ws, located) || (stops && !collide(ws))) return Status::no_mode;
+  const bool much = status == Status::running && stops_much(ws, located, kinetic_energy(ws));
+  if (status == Status::running && (much || stops_short(ws, located))) {
+    if (!stop_within_tolerance(ws, located, much ? 0.0 : slip_tolerance(ws)) || (stops && !collide(ws)))
+      return Status::no_mode;
     see_speeds(ws);
     status = settle(ws, -1);
+    ws.contact.impulse[located] = 1;
   }
   const int jammed = status == Status::running ? backward_freewheel(ws) : -1;
   if (jammed < 0) return status;
@@ -229,9 +250,10 @@ void report_changes(Workspace<T>& ws, bool at_start, double energy_before) {
   const EventContext<T>& before = ws.event_context;
   for (int c = 0; c < ws.sys.contacts; ++c) {
     const int mode = ws.contact.mode[c];
-    // one that jams may slip on as before
-    const bool struck = ws.contact.struck[c] != 0, jams = before.cause == Cause::jam && c == before.contact;
-    if (!struck && !(jams && !at_start) && (mode == before.mode[c] || (at_start && !ws.contact.impulse[c]))) continue;
+    // one that jams, or is stopped within its tolerance, may slip on as before
+    const bool stopped = before.cause == Cause::jam || ws.contact.impulse[c] != 0;
+    const bool struck = ws.contact.struck[c] != 0, again = !at_start && c == before.contact && stopped;
+    if (!struck && !again && (mode == before.mode[c] || (at_start && !ws.contact.impulse[c]))) continue;
     const bool own = c == before.contact || before.contact < 0;
     const Cause cause = at_start ? Cause::impulse : struck ? Cause::impact : own ? before.cause : Cause::other_event;
     const double hits = value(mode == locked ? before.slope[c] : ws.decision.acceleration[c]);
@@ -240,15 +262,19 @@ void report_changes(Workspace<T>& ws, bool at_start, double energy_before) {
   }
 }
 
-/// What jumps at an instant: prescribed speeds while the ratios are still those before, then the ratios.
+/// Prescribed speeds jump while the ratios are still those before.
+template <class T>
+void jump_prescribed(Workspace<T>& ws) {
+  const BesideRatios<T> beside(ws, Written::before);
+  prescribed_jump(ws);
+}
+
+/// What jumps at an instant: prescribed speeds, then the ratios. It does so once, however often the modes are decided.
 template <class T>
 void jump(Workspace<T>& ws) {
-  if (ws.ratios.n == 0) return prescribed_jump(ws);
-  {
-    const BesideRatios<T> beside(ws, Written::before);
-    prescribed_jump(ws);
-  }
-  jump_ratios(ws, slip_tolerance(ws));
+  jump_prescribed(ws);
+  if (ws.ratios.n > 0) jump_ratios(ws, slip_tolerance(ws)), keep_ratios(ws);
+  keep_prescribed(ws);
 }
 
 /// Decide the modes at the present instant and report what changed.

@@ -1,6 +1,7 @@
 #pragma once
 #include <clutchwork/components/pieces.hpp>
 #include <clutchwork/motion/dynamics.hpp>
+#include <clutchwork/motion/mesh_loads.hpp>
 #include <clutchwork/run/event.hpp>
 #include <clutchwork/run/guards/inputs.hpp>
 #include <clutchwork/run/hit.hpp>
@@ -65,6 +66,16 @@ CLUTCHWORK_INLINE Truth<T> stays_clear(const Workspace<T>& ws, int k, Real<T> si
   return g1 >= 0 && c0 >= 0 && c1 >= 0;
 }
 
+/// Whether a rate stays where it is over the step, but for round-off of the torques: what is held rigidly at a kink.
+template <class T>
+bool idles(const Workspace<T>& ws, const LineGuard& guard, double h, double g0, double g1) {
+  const auto &e0 = ws.step_start, &e1 = ws.step_end;
+  const double own = value(ws.geometry.own[ws.branch[guard.branch].direction]);
+  const double still = 1e-6 * ws.guard.zero + 1e-14 * h * torque_size(ws) * own;
+  const double moves = h * larger(abs(value(e0.slope[guard.branch])), abs(value(e1.slope[guard.branch])));
+  return larger(larger(abs(g0), abs(g1)), moves) <= still;
+}
+
 /// A zero of a line guard beside transmissions, found at s on the interpolant, where the state on their ties has it: by
 /// secants nearby. docs/theory/varying-ratios.md (9)
 template <class Form>
@@ -122,7 +133,7 @@ struct LineCrossing {
     for (int i = 0; i < ws.guard.n_lines; ++i) {
       const LineGuard& g = ws.guard.line[i];
       double g0, g1;
-      if (stays_clear(ws, g.branch, g.sign, g.level, step.h, noise, g0, g1)) continue;
+      if (stays_clear(ws, g.branch, g.sign, g.level, step.h, noise, g0, g1) || idles(ws, g, step.h, g0, g1)) continue;
       double s = line_crossing(form, step, g, g0, g1, noise, hit.s);
       if constexpr (Form::full) {
         if (ws.ratios.n > 0 && s > 0 && s < 1) s = crossing_on_ties(form, step, g, noise, s);

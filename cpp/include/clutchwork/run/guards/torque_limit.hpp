@@ -57,15 +57,11 @@ bool has_pole(const Workspace<T>& ws, int a) {
   return before * after < 0 && before * value(ws.step_start.drift[a]) > 0 && after * value(ws.step_end.drift[a]) < 0;
 }
 
-/// Where such a torque leaves what the contact holds, on its way to the pole; -1: not before `limit`.
-template <class Form>
-[[gnu::noinline]] double before_pole(Form& form, Step<Form>& step, int a, double margin_at_start, double limit) {
+/// Where what is held with such a torque leaves its limit, on the way to the pole, by its margin f; -1: not before
+/// `limit`.
+template <class T, class F>
+[[gnu::noinline]] double before_pole(const Workspace<T>& ws, int a, F&& f, double margin_at_start, double limit) {
   constexpr int halvings = 40;
-  auto& ws = form.ws;
-  auto f = [&](double s) {
-    torques_at(form, step, s);
-    return margin_seen(ws, a);
-  };
   const double sign = value(ws.step_start.multiplier[a]);
   double low = 0, above = larger(margin_at_start, 0.0), high = 1;
   for (int k = 0; k < halvings; ++k) {
@@ -121,7 +117,11 @@ struct TorqueLimit {
       if (holds && !ends_elsewhere(ws, hit) && !pole) continue;
       if (pole) {
         fit(form, step);
-        hit.take(before_pole(form, step, a, before, hit.s), a);
+        auto margin_of = [&](double s) {
+          torques_at(form, step, s);
+          return margin_seen(ws, a);
+        };
+        hit.take(before_pole(ws, a, margin_of, before, hit.s), a);
       }
       watched[n++] = a;
       m0 = smaller(m0, before + more_noise(ws, a, ws.step_start.capacity[a]));
