@@ -196,8 +196,21 @@ CAUSES = {
     10: ("impact", "the gap of a stop closed: it bounced, or holds"),
 }
 
-# integrators by name, with their numbers in the core; auto chooses between the others
-METHODS = {"auto": 0, "rodas5p": 1, "dopri5": 2}
+# integrators by name, with their numbers in the core; auto chooses between those with steps of any length
+METHODS = {"auto": 0, "rodas5p": 1, "dopri5": 2, "fixed": 3}
+
+# what the method "fixed" does not take, by number: (name, what it is); a number keeps its meaning
+REFUSALS = {
+    1: ("varying_ratio", "its ratio varies"),
+    2: ("several_ways", "it has several ways that act on each other"),
+    3: ("switches", "it changes between pieces at instants that must be found"),
+    4: ("stop", "it is a stop with impacts"),
+    5: ("load_dependent", "its friction follows its own load"),
+    6: ("chatters", "its law jumps with the sign of the slip and never sticks"),
+    7: ("many_speeds", f"there are more than {FEW_SPEEDS} independent speeds"),
+    8: ("massless", "a shaft has no inertia"),
+    9: ("shared_states", "there are states that several components read, such as temperatures"),
+}
 
 # what a run counts, in order: (name, meaning)
 STATISTICS = (
@@ -253,6 +266,11 @@ STATUS = (
         "give a named gear more efficiency, or the shafts that drive it more inertia",
     ),
     ("interrupted", "the run was interrupted", "what was computed up to here is kept in .trajectory"),
+    (
+        "refused",
+        'method "fixed" does not take this',
+        'choose method "auto"; what fixed steps take is listed in docs/guide/fixed-steps.md',
+    ),
 )
 # the numbers of these
 STATUSES = [name for name, *_ in STATUS]

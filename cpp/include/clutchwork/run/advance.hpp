@@ -247,9 +247,10 @@ Status reach_phase(Workspace<T>& ws) {
   return ws.fresh_phase && !enter_mode(ws) ? Status::no_mode : Status::running;
 }
 
-/// Integrate to t_end, filling rows and events on the way.
+/// Integrate to t_end by phases between events, filling rows and events on the way.
 template <class T>
-Status advance(Workspace<T>& ws, double t_end, Sink& sink) {
+Status advance_by_events(Workspace<T>& ws, double t_end, Sink& sink) {
+  ws.fixed.ready = false;
   Status status = reach_phase(ws);
   while (status == Status::running) {
     status = dispatch(ws, t_end, sink);
@@ -257,6 +258,21 @@ Status advance(Workspace<T>& ws, double t_end, Sink& sink) {
     if (status == Status::running) status = reach_phase(ws);
   }
   return status;
+}
+
+/// Steps of one length: run/fixed/advance.hpp.
+template <class T>
+Status advance_fixed(Workspace<T>& ws, double t_end, Sink& sink);
+
+/// Integrate to t_end by the method that is wanted.
+template <class T>
+Status advance(Workspace<T>& ws, double t_end, Sink& sink) {
+  if constexpr (!has_tangents<T>) {
+    if (ws.options.method == Method::fixed) return advance_fixed(ws, t_end, sink);
+    // what fixed steps have left is decided anew
+    if (ws.started && ws.fixed.time == ws.time) ws.params_changed = true, ws.fixed.time = -infinity;
+  }
+  return advance_by_events(ws, t_end, sink);
 }
 
 }  // namespace clutchwork

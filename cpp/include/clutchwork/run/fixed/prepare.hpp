@@ -1,0 +1,120 @@
+#pragma once
+#include <clutchwork/components/component.hpp>
+#include <clutchwork/components/dense.hpp>
+#include <clutchwork/components/direction.hpp>
+#include <clutchwork/components/kinds.hpp>
+#include <clutchwork/components/pieces.hpp>
+#include <clutchwork/contacts/sticking.hpp>
+#include <clutchwork/motion/branches.hpp>
+#include <clutchwork/workspace.hpp>
+
+/// What fixed steps take, and their matrices.
+namespace clutchwork::fixed {
+
+using Run = Workspace<double>;
+
+inline bool has_varying_ratio(int kind) {
+  return visit_torque(kind, [](auto tag) { return TransmissionElement<typename decltype(tag)::type>; });
+}
+/// Whether a component only changes its piece at an instant that must be found.
+inline bool crosses(int kind, int law) {
+  auto of = [](auto tag) {
+    using E = typename decltype(tag)::type;
+    return SwitchingLaw<E> && !Settling<E>;
+  };
+  return law < 0 ? visit_torque(kind, of) : visit_law(law, of);
+}
+inline bool is_limited(int kind) {
+  return visit_contact(kind, [](auto tag) { return LimitedContact<typename decltype(tag)::type>; });
+}
+
+/// Why a direction is refused; `taken`: it is not.
+inline Refusal refusal_of(const Run& ws, int d) {
+  const System& sys = ws.sys;
+  if (d < sys.elements) {
+    const int kind = sys.element_kind[d];
+    if (has_varying_ratio(kind)) return Refusal::varying_ratio;
+    if (ways_of(kind) > 1) return Refusal::several_ways;
+    return crosses(kind, -1) ? Refusal::switches : Refusal::taken;
+  }
+  const int c = d - int(sys.elements), law = sys.contact_law[c];
+  if (sys.contact_place[c] >= 0) return Refusal::stop;
+  if (is_loaded(sys.contact_kind[c])) return Refusal::load_dependent;
+  if (is_chattering_law(law)) return Refusal::chatters;
+  return crosses(0, law) ? Refusal::switches : Refusal::taken;
+}
+
+/// Whether fixed steps take all of a system; else `detail` tells what they do not, and why.
+inline bool takes(Run& ws) {
+  const System& sys = ws.sys;
+  auto refuse = [&](int component, Refusal why) {
+    ws.detail.component = component, ws.detail.value = double(int(why));
+    return false;
+  };
+  for (int d = 0; d < ws.n_directions; ++d) {
+    const Refusal why = refusal_of(ws, d);
+    if (why != Refusal::taken) return refuse(d, why);
+  }
+  if (!is_few(sys)) return refuse(-1, Refusal::many_speeds);
+  for (int i = 0; i < sys.speeds; ++i) {
+    if (sys.massless[i] != 0) return refuse(-1, Refusal::massless);
+  }
+  if (sys.shared > 0) return refuse(-1, Refusal::shared_states);
+  return true;
+}
+
+/// The branches of all directions, each at the place of its direction, and what they ask for in every step.
+inline void pack_all(Run& ws) {
+  Fixed<double>& f = ws.fixed;
+  const int ne = int(ws.sys.elements);
+  int block = 0;
+  ws.n_rates = 0;
+  for (int d = 0; d < ws.n_directions; ++d) {
+    pack(ws, d, d < ne ? 0 : forward, block);
+    const bool settles = d < ne ? is_settling(ws.sys.element_kind[d]) : is_settling_law(ws.sys.contact_law[d - ne]);
+    f.bends[d] = settles || edge_count(ws, d) > 0;
+  }
+  ws.n_branches = ws.n_rates;
+  for (int c = 0; c < ws.sys.contacts; ++c) {
+    const int kind = ws.sys.contact_kind[c];
+    f.two_sided[c] = is_shaped(kind) || is_limited(kind);
+  }
+  f.ready = true;
+}
+
+/// Factor of M - h/2 sum(slope d'd), the answers to the impulses of the contacts and their mobility.
+/// docs/theory/fixed-steps.md (5)
+inline bool factor_step(Run& ws, double h) {
+  const System& sys = ws.sys;
+  Fixed<double>& f = ws.fixed;
+  const int nv = int(sys.speeds), ne = int(sys.elements), nc = int(sys.contacts);
+  for (int i = 0; i < nv * nv; ++i) f.factor[i] = 0;
+  for (int i = 0; i < nv; ++i) {
+    const auto row = mass_row(sys, i);
+    for (int k = 0; k < row.n && row.column[k] <= i; ++k) f.factor[i * nv + row.column[k]] = row.value[k];
+  }
+  for (int d = 0; d < ws.n_directions; ++d) {
+    if (f.kept[d] == 0) continue;
+    const auto row = rate_row(sys, d);
+    for (int a = 0; a < row.n; ++a) {
+      for (int b = 0; b <= a; ++b)
+        f.factor[row.column[a] * nv + row.column[b]] -= 0.5 * h * f.kept[d] * row.value[a] * row.value[b];
+    }
+  }
+  if (!cholesky(nv, f.factor, nv)) return false;
+  for (int c = 0; c < nc; ++c) {
+    double* x = f.answer + c * nv;
+    const auto row = rate_row(sys, ne + c);
+    for (int i = 0; i < nv; ++i) x[i] = 0;
+    for (int k = 0; k < row.n; ++k) x[row.column[k]] = row.value[k];
+    forward_solve(nv, f.factor, nv, x), backward_solve(nv, f.factor, nv, x);
+  }
+  for (int c = 0; c < nc; ++c) {
+    for (int o = 0; o < nc; ++o) f.mobility[c * nc + o] = rate_row(sys, ne + c).times(f.answer + o * nv);
+  }
+  f.length = h;
+  ++ws.statistics.jacobians;
+  return true;
+}
+
+}  // namespace clutchwork::fixed
