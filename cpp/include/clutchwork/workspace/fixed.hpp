@@ -28,7 +28,7 @@ struct Fixed {
   T* mobility = nullptr;  ///< of the contacts, by rows: change of slips by unit impulses
 
   // scratch of a step
-  T *ahead = nullptr, *state_ahead = nullptr;       ///< speeds and states predicted for its middle
+  T *ahead = nullptr, *state_ahead = nullptr, *given_ahead = nullptr;  ///< speeds and states predicted for its middle
   T *change = nullptr, *state_change = nullptr, *given_change = nullptr;
   T *force = nullptr, *slope = nullptr;             ///< of each direction: torque at rate zero; its slope by the rate
   T* predicted = nullptr;                           ///< of each direction: rate in the middle
@@ -42,7 +42,6 @@ struct Fixed {
   T* share = nullptr;    ///< of each contact: where in the step it breaks away
   T* instant = nullptr;  ///< [s] of each contact: when its mode changes
   int *side = nullptr, *list = nullptr, *box = nullptr, *mode = nullptr;
-  T* rows = nullptr;  ///< scratch of a row: angles
 
   template <class P, class A>
   static void lay_out(P& p, A& a, const Sizes& n) {
@@ -54,14 +53,13 @@ struct Fixed {
     a.take(p.bends, nd), a.take(p.two_sided, nc);
     a.scratch(p.factor, nv * nv), a.scratch(p.answer, nc * nv), a.scratch(p.mobility, nc * nc);
     a.scratch(p.ahead, nv), a.scratch(p.state_ahead, ns), a.scratch(p.change, nv), a.scratch(p.state_change, ns);
-    a.scratch(p.given_change, np), a.scratch(p.force, nd), a.scratch(p.slope, nd), a.scratch(p.predicted, nd);
+    a.scratch(p.given_change, np), a.scratch(p.given_ahead, np), a.scratch(p.force, nd), a.scratch(p.slope, nd), a.scratch(p.predicted, nd);
     a.scratch(p.state_force, ns), a.scratch(p.state_slope, ns), a.scratch(p.state_share, ns);
     a.scratch(p.start_rate, nd), a.scratch(p.rate_change, nd), a.scratch(p.mean, nd);
     a.scratch(p.impulse, nc), a.scratch(p.gradient, nc), a.scratch(p.lower, nc), a.scratch(p.upper, nc);
     a.scratch(p.weight, nc), a.scratch(p.end_slip, nc), a.scratch(p.solved, nc), a.scratch(p.free_factor, nc * nc);
     a.scratch(p.kinetic, 2 * nc), a.scratch(p.limit, 2 * nc), a.scratch(p.share, nc), a.scratch(p.instant, nc);
     a.take(p.side, nc), a.take(p.list, nc), a.take(p.box, nc), a.take(p.mode, nc);
-    a.scratch(p.rows, has ? n.nodes : 0);
   }
 };
 

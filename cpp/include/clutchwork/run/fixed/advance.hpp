@@ -63,7 +63,9 @@ inline Status begin(Run& ws, Sink& sink) {
 inline Status make_ready(Run& ws, Sink& sink) {
   Fixed<double>& f = ws.fixed;
   if (!f.ready && !takes(ws)) return Status::refused;
-  if (!ws.started || f.time != ws.time || f.before == 0) {
+  // its first row is there once, where rows are those of steps
+  const bool begun = ws.started && f.time == ws.time;
+  if (!begun || (f.before == 0 && sink.steps == 0)) {
     const Status status = begin(ws, sink);
     if (status != Status::running) return status;
   }

@@ -68,10 +68,12 @@ inline void fill_row(Run& ws, const Look& look, double s, double length, const i
   const Fixed<double>& f = ws.fixed;
   const RowLayout& at = ws.row;
   const int nd = ws.n_directions, ne = int(sys.elements);
+  // as they are behind the step, to the last bit
+  for (int i = 0; i < sys.speeds; ++i) f.ahead[i] = ws.v[i] + s * look.change[i];
+  for (int p = 0; p < sys.prescribed; ++p) f.given_ahead[p] = f.given[p] + s * look.given[p];
   for (int n = 0; n < sys.nodes; ++n) {
-    const double gain = node_value(sys, n, look.change, look.given);
-    row[at.speed + n] = node_value(sys, n, ws.v, f.given) + s * gain;
-    row[at.acceleration + n] = length > 0 ? gain / length : 0;
+    row[at.speed + n] = node_value(sys, n, f.ahead, f.given_ahead);
+    row[at.acceleration + n] = length > 0 ? node_value(sys, n, look.change, look.given) / length : 0;
     row[at.angle + n] = ws.options.angles ? angle_at(ws, look, s, n) : ws.angle[n];
   }
   for (int i = 0; i < sys.states; ++i) row[at.state + i] = ws.state[i] + s * look.state[i];

@@ -88,16 +88,14 @@ inline bool is_smooth(const Run& ws, int d) { return d < ws.sys.elements || ws.b
 /// All of them; the matrix follows where they have changed. False: it is not positive definite.
 inline bool see_torques(Run& ws, double h) {
   Fixed<double>& f = ws.fixed;
-  bool kept = f.length == h;
+  bool kept = true;
   for (int d = 0; d < ws.n_directions; ++d) {
     if (!is_smooth(ws, d)) continue;
     see_branch(ws, ws.branch[d], h);
     kept = kept && is_kept(ws, ws.branch[d], h);
   }
-  if (!kept) {
-    for (int d = 0; d < ws.n_directions; ++d) f.kept[d] = is_smooth(ws, d) ? f.slope[d] : 0;
-    if (!factor_step(ws, h)) return false;
-  }
+  for (int d = 0; !kept && d < ws.n_directions; ++d) f.kept[d] = is_smooth(ws, d) ? f.slope[d] : 0;
+  if (!(kept && f.length == h) && !factor_step(ws, h)) return false;
   for (int d = 0; d < ws.n_directions; ++d) {
     if (is_smooth(ws, d)) f.force[d] -= f.kept[d] * f.predicted[d];
   }
