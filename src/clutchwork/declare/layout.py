@@ -202,14 +202,11 @@ METHODS = {"auto": 0, "rodas5p": 1, "dopri5": 2, "fixed": 3}
 # what the method "fixed" does not take, by number: (name, what it is); a number keeps its meaning
 REFUSALS = {
     1: ("varying_ratio", "its ratio varies"),
-    2: ("several_ways", "it has several ways that act on each other"),
-    3: ("switches", "it changes between pieces at instants that must be found"),
-    4: ("stop", "it is a stop with impacts"),
-    5: ("load_dependent", "its friction follows its own load"),
-    6: ("chatters", "its law jumps with the sign of the slip and never sticks"),
-    7: ("many_speeds", f"there are more than {FEW_SPEEDS} independent speeds"),
-    8: ("massless", "a shaft has no inertia"),
-    9: ("shared_states", "there are states that several components read, such as temperatures"),
+    2: ("stop", "it is a stop with impacts"),
+    3: ("load_dependent", "its friction follows its own load"),
+    4: ("chatters", "its law jumps with the sign of the slip and never sticks"),
+    5: ("many_speeds", f"the model has more than {FEW_SPEEDS} independent speeds"),
+    6: ("massless", "a shaft has no inertia"),
 }
 
 # what a run counts, in order: (name, meaning)
@@ -268,8 +265,8 @@ STATUS = (
     ("interrupted", "the run was interrupted", "what was computed up to here is kept in .trajectory"),
     (
         "refused",
-        'method "fixed" does not take this',
-        'choose method "auto"; what fixed steps take is listed in docs/guide/fixed-steps.md',
+        "steps of one length do not take this",
+        "choose the method auto, or model it otherwise: the guide on fixed steps lists what they take",
     ),
 )
 # the numbers of these

@@ -95,6 +95,7 @@ inline Status take_step(Run& ws, double t_end, Sink& sink) {
   if (shown != Status::running) return shown;
   take_over(ws, look);
   report(ws, look, end);
+  cross_pieces(ws);
   for (int d = 0; d < ws.n_directions; ++d) f.torque[d] = f.mean[d];
   for (int i = 0; i < 2 * ws.sys.contacts; ++i) f.held[i] = f.limit[i];
   ws.time = f.time = end;
@@ -116,7 +117,7 @@ Status advance_fixed(Workspace<T>& ws, double t_end, Sink& sink) {
     if (status == Status::running) status = fixed::take_step(ws, t_end, sink);
   }
   // whatever else goes on from here begins a phase
-  if (ws.started) ws.fresh_phase = true, inputs_at(ws, ws.time);
+  if (ws.started) ws.fresh_phase = true, inputs_at(ws, ws.time), shared_inputs(ws, ws.state);
   return status == Status::running ? Status::done : status;
 }
 

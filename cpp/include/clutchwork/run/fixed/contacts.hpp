@@ -36,7 +36,7 @@ inline void see_contact(Run& ws, int c) {
   }
   if (!b.pressed || b.compliant) return;
   const double size = mode == locked || mode == open ? 0.0 : larger(mode * f.predicted[d], 0.0);
-  if (f.bends[d]) ws.piece[d] = b.piece = sliding_piece(ws, d, size);
+  if (f.bends[d] == settling) ws.piece[d] = b.piece = sliding_piece(ws, d, size);
   b.sign = forward;
   kinetic[1] = larger(-contact_torque(ws, b, size, ws.state, ws.observed.state_rates), 0.0);
   kinetic[0] = kinetic[1];

@@ -16,7 +16,7 @@ using Run = Workspace<double>;
 inline bool has_varying_ratio(int kind) {
   return visit_torque(kind, [](auto tag) { return TransmissionElement<typename decltype(tag)::type>; });
 }
-/// Whether a component only changes its piece at an instant that must be found.
+/// Whether the piece of a component follows from the one before alone.
 inline bool crosses(int kind, int law) {
   auto of = [](auto tag) {
     using E = typename decltype(tag)::type;
@@ -24,6 +24,8 @@ inline bool crosses(int kind, int law) {
   };
   return law < 0 ? visit_torque(kind, of) : visit_law(law, of);
 }
+/// Where the piece of a direction comes from: it has one alone, from where it is, or from the one before.
+enum Bend : int { straight, settling, crossing };
 inline bool is_limited(int kind) {
   return visit_contact(kind, [](auto tag) { return LimitedContact<typename decltype(tag)::type>; });
 }
@@ -33,15 +35,12 @@ inline Refusal refusal_of(const Run& ws, int d) {
   const System& sys = ws.sys;
   if (d < sys.elements) {
     const int kind = sys.element_kind[d];
-    if (has_varying_ratio(kind)) return Refusal::varying_ratio;
-    if (ways_of(kind) > 1) return Refusal::several_ways;
-    return crosses(kind, -1) ? Refusal::switches : Refusal::taken;
+    return has_varying_ratio(kind) ? Refusal::varying_ratio : Refusal::taken;
   }
   const int c = d - int(sys.elements), law = sys.contact_law[c];
   if (sys.contact_place[c] >= 0) return Refusal::stop;
   if (is_loaded(sys.contact_kind[c])) return Refusal::load_dependent;
-  if (is_chattering_law(law)) return Refusal::chatters;
-  return crosses(0, law) ? Refusal::switches : Refusal::taken;
+  return is_chattering_law(law) ? Refusal::chatters : Refusal::taken;
 }
 
 /// Whether fixed steps take all of a system; else `detail` tells what they do not, and why.
@@ -59,7 +58,6 @@ inline bool takes(Run& ws) {
   for (int i = 0; i < sys.speeds; ++i) {
     if (sys.massless[i] != 0) return refuse(-1, Refusal::massless);
   }
-  if (sys.shared > 0) return refuse(-1, Refusal::shared_states);
   return true;
 }
 
@@ -71,8 +69,10 @@ inline void pack_all(Run& ws) {
   ws.n_rates = 0;
   for (int d = 0; d < ws.n_directions; ++d) {
     pack(ws, d, d < ne ? 0 : forward, block);
+    const bool first = d >= ne || ws.sys.element_way[d] == 0;
     const bool settles = d < ne ? is_settling(ws.sys.element_kind[d]) : is_settling_law(ws.sys.contact_law[d - ne]);
-    f.bends[d] = settles || edge_count(ws, d) > 0;
+    const bool crossed = d < ne ? crosses(ws.sys.element_kind[d], -1) : crosses(0, ws.sys.contact_law[d - ne]);
+    f.bends[d] = !first ? straight : crossed ? crossing : settles || edge_count(ws, d) > 0 ? settling : straight;
   }
   ws.n_branches = ws.n_rates;
   for (int c = 0; c < ws.sys.contacts; ++c) {

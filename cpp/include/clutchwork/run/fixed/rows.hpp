@@ -1,6 +1,7 @@
 #pragma once
 #include <clutchwork/components/branch.hpp>
 #include <clutchwork/components/direction.hpp>
+#include <clutchwork/motion/shared.hpp>
 #include <clutchwork/run/fixed/prepare.hpp>
 #include <clutchwork/run/output.hpp>
 
@@ -97,6 +98,13 @@ inline void fill_row(Run& ws, const Look& look, double s, double length, const i
   }
   const double t = look.t + s * look.h;
   inputs_at(ws, t);
+  if (ws.in.n_shared_refs > 0) shared_inputs(ws, row + at.state);
+  if (sys.flows > 0) {
+    // as they are with the torques of the step
+    for (int d = 0; d < nd; ++d) f.predicted[d] = f.start_rate[d] + s * f.rate_change[d];
+    shared_rates(ws, f.predicted, look.torque, row + at.state, ws.observed.state_rates);
+    for (int i = 0; i < sys.flows; ++i) row[at.flow + i] = flow_value(ws, i);
+  }
   for (int i = 0; i < sys.supplies; ++i) {
     const int d = sys.supply_element[i];
     row[at.supply_power + i] = supply_power(ws, i, look.torque[d], rate_of(ws, d) + s * f.rate_change[d], row + at.state);

@@ -2,7 +2,9 @@
 #include <clutchwork/run/clamp_loads.hpp>
 #include <clutchwork/run/event.hpp>
 #include <clutchwork/run/fixed/contacts.hpp>
+#include <clutchwork/run/fixed/pieces.hpp>
 #include <clutchwork/run/fixed/rows.hpp>
+#include <clutchwork/run/fixed/shared.hpp>
 #include <clutchwork/run/fixed/torques.hpp>
 #include <clutchwork/run/snapshot.hpp>
 
@@ -32,6 +34,15 @@ inline void read_signals(Run& ws, double t) {
   if (ws.in.next_knot > t) return inputs_at(ws, t);
   load_inputs(ws, t);
   refresh_loads(ws);
+}
+
+/// Inputs that are states or rates, as they are predicted for the middle.
+inline void see_middle(Run& ws) {
+  if (ws.in.n_shared_refs > 0) shared_inputs(ws, ws.fixed.state_ahead);
+  for (int i = 0; i < ws.in.n_rate_refs; ++i) {
+    const int ref = ws.in.rate_ref[i];
+    ws.in.u[ref] = ws.fixed.predicted[element_behind(ws, ref)];
+  }
 }
 
 /// Contacts fail whose fault is there now.
@@ -89,6 +100,7 @@ inline void move(Run& ws, double h) {
     if (d >= ne) f.mean[d] += f.impulse[d - ne] / h;
   }
   end_states(ws);
+  if (sys.shared > 0) change_shared(ws, h);
 }
 
 /// Contacts that only join prescribed shafts: their torque moves nothing. False: a freewheel is turned backward.
@@ -109,10 +121,11 @@ inline Status make_step(Run& ws, const double t, const double h, const double en
   Fixed<double>& f = ws.fixed;
   const double tolerance = slip_tolerance(ws);
   read_signals(ws, t + 0.5 * h);
+  predict(ws, h);
+  see_middle(ws);
   if (ws.guard.n_faulty > 0) see_faults(ws);
   if (ws.contact.failed >= 0) return ws.detail.component = int(ws.sys.elements) + ws.contact.failed, Status::fault;
   see_loads(ws);
-  predict(ws, h);
   if (!see_torques(ws, h)) return Status::no_mode;
   for (int c = 0; c < ws.sys.contacts; ++c) see_contact(ws, c);
   follow_prescribed(ws, end);

@@ -13,12 +13,31 @@ inline double share_of(double z) {
   return z < -40 ? 1 + 1 / z : 1 / z + 1 / (1 - exp(z));
 }
 
-/// The piece of a branch at a rate.
-inline void settle_piece(Run& ws, Branch<double>& b, double rate) {
+/// The piece of a branch at the rates of its ways.
+inline void settle_piece(Run& ws, Branch<double>& b, const double* rate) {
   const int d = b.direction, edges = edge_count(ws, d);
-  if (edges > 0) ws.piece[d] += piece_of(ws, d, rate) - ws.piece[d] % (edges + 1);
+  if (edges > 0) ws.piece[d] += piece_of(ws, d, rate[0]) - ws.piece[d] % (edges + 1);
   b.piece = ws.piece[d];
-  ws.piece[d] = b.piece = settled_piece(ws, b, &rate);
+  ws.piece[d] = b.piece = settled_piece(ws, b, rate);
+}
+
+/// An element of several ways: each torque with its slope by its own rate, the states by their rates in the middle.
+inline void see_ways(Run& ws, Branch<double>& b, double h) {
+  Fixed<double>& f = ws.fixed;
+  using S = Dual<double, most_ways>;
+  const double* rate = f.predicted + b.direction;
+  if (f.bends[b.direction] == settling) settle_piece(ws, b, rate);
+  S rates[most_ways], own[most_own_states], state_rates[most_own_states], input[most_inputs], torque[most_ways];
+  for (int i = 0; i < b.ways; ++i) rates[i] = S::variable(rate[i], i);
+  for (int i = 0; i < b.states; ++i) own[i] = S(f.state_ahead[b.state + i]);
+  for (int i = 0; i < b.inputs; ++i) input[i] = S(b.input[i]);
+  element_torques(ws, b, rates, own, input, state_rates, torque);
+  for (int i = 0; i < b.ways; ++i)
+    f.force[b.direction + i] = torque[i].v, f.slope[b.direction + i] = smaller(torque[i].d[i], 0.0);
+  for (int i = 0; i < b.states; ++i) {
+    const int s = b.state + i;
+    f.state_force[s] = ws.state[s] + h * state_rates[i].v, f.state_slope[s] = 0, f.state_share[s] = 1;
+  }
 }
 
 /// Own states of a branch in the middle: fixed part and slope by the rate, in state_force and state_slope.
@@ -54,8 +73,9 @@ inline void eliminate_states(Run& ws, const Branch<double>& b, double h) {
 inline void see_branch(Run& ws, Branch<double>& b, double h) {
   Fixed<double>& f = ws.fixed;
   const int d = b.direction;
+  if (b.ways > 1) return see_ways(ws, b, h);
   const double rate = f.predicted[d];
-  if (f.bends[d]) settle_piece(ws, b, rate);
+  if (f.bends[d] == settling) settle_piece(ws, b, &rate);
   const Partial<double> p =
       branch_partial(ws, b, rate, 0.0, f.state_ahead, ws.observed.state_rates, state_partials(ws, d));
   double torque = p.torque, slope = p.by_rate;
@@ -78,7 +98,7 @@ inline bool is_kept(const Run& ws, const Branch<double>& b, double h) {
   const Fixed<double>& f = ws.fixed;
   const int d = b.direction;
   const double off = abs(f.slope[d] - f.kept[d]);
-  if (b.states > 0) return off <= 1e-14 * abs(f.slope[d]);
+  if (b.states > 0 && b.ways == 1) return off <= 1e-14 * abs(f.slope[d]);
   return 0.5 * h * off * ws.geometry.own[d] <= 0.02;
 }
 
@@ -91,7 +111,8 @@ inline bool see_torques(Run& ws, double h) {
   bool kept = true;
   for (int d = 0; d < ws.n_directions; ++d) {
     if (!is_smooth(ws, d)) continue;
-    see_branch(ws, ws.branch[d], h);
+    // the first way has seen the others
+    if (ws.branch[d].ways > 0) see_branch(ws, ws.branch[d], h);
     kept = kept && is_kept(ws, ws.branch[d], h);
   }
   for (int d = 0; !kept && d < ws.n_directions; ++d) f.kept[d] = is_smooth(ws, d) ? f.slope[d] : 0;
