@@ -265,14 +265,14 @@ STATUS = (
     ("interrupted", "the run was interrupted", "what was computed up to here is kept in .trajectory"),
     (
         "refused",
-        "steps of one length do not take this",
+        "steps of one length do not take the motion",
         "choose the method auto, or model it otherwise: the guide on fixed steps lists what they take",
     ),
 )
 # the numbers of these
 STATUSES = [name for name, *_ in STATUS]
-DONE, ROWS_FULL, EVENTS_FULL, NOT_FINITE, INTERRUPTED = (
-    STATUSES.index(name) for name in ("done", "rows_full", "events_full", "not_finite", "interrupted")
+DONE, ROWS_FULL, EVENTS_FULL, NOT_FINITE, INTERRUPTED, REFUSED = (
+    STATUSES.index(name) for name in ("done", "rows_full", "events_full", "not_finite", "interrupted", "refused")
 )
 
 

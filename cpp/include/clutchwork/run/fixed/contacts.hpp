@@ -64,7 +64,7 @@ inline void set_box(Run& ws, int c, double h) {
 }
 
 /// Where in the step a contact breaks away that was locked in the last one, -1/2 to 1/2: there the torque that would
-/// hold it passes what it can hold, both as lines through the middles of the two steps. docs/theory/fixed-steps.md (9)
+/// hold it passes what it can hold, both as lines through the middles of the two steps. docs/theory/fixed-steps.md (8)
 inline double share_at_limit(const Run& ws, int c, int way, double h) {
   const Fixed<double>& f = ws.fixed;
   if (f.before == 0 || f.time != ws.time) return 0;
@@ -73,7 +73,7 @@ inline double share_at_limit(const Run& ws, int c, int way, double h) {
   const double before = sign * f.torque[ws.sys.elements + c];
   const double over = needed - f.limit[2 * c + way], rise = over - (before - f.held[2 * c + way]);
   if (!(rise > 0)) return 0;
-  return larger(-0.5, smaller(0.5, 0.5 - 0.5 * (1 + h / f.before) * over / rise));
+  return larger(-0.5, smaller(0.5, 0.5 - 0.5 * (1 + f.before / h) * over / rise));
 }
 
 /// Contacts whose torques say otherwise than their boxes: they get the other one. Whether there are any.

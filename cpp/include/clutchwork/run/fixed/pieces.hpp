@@ -15,11 +15,15 @@ inline void cross_branch(Run& ws, Branch<double>& b) {
   const PresentRates<double> rate(ws, b);
   const double still[most_ways] = {};
   int& heading = ws.heading[b.direction];
+  b.piece = ws.piece[b.direction];
   const int now = rate.at[0] < 0 ? backward : forward;
   if (now != heading && rate.at[0] != 0) {
     if (law_turns(b)) b.piece = law_cross(ws, b, rate.at, turned, ws.state);
     heading = now;
   }
+  const int d = b.direction, edges = edge_count(ws, d);
+  if (edges > 0) b.piece += piece_of(ws, d, rate.at[0]) - b.piece % (edges + 1);
+  b.piece = settled_piece(ws, b, rate.at);
   for (int round = 0; round < most_passed; ++round) {
     int who = 0;
     if (law_margin(ws, b, rate.at, still, ws.state, ws.observed.state_rates, who).v >= 0) break;

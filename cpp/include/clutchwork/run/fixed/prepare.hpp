@@ -16,12 +16,9 @@ using Run = Workspace<double>;
 inline bool has_varying_ratio(int kind) {
   return visit_torque(kind, [](auto tag) { return TransmissionElement<typename decltype(tag)::type>; });
 }
-/// Whether the piece of a component follows from the one before alone.
+/// Whether a component leaves its piece where its own margin says so.
 inline bool crosses(int kind, int law) {
-  auto of = [](auto tag) {
-    using E = typename decltype(tag)::type;
-    return SwitchingLaw<E> && !Settling<E>;
-  };
+  auto of = [](auto tag) { return SwitchingLaw<typename decltype(tag)::type>; };
   return law < 0 ? visit_torque(kind, of) : visit_law(law, of);
 }
 /// Where the piece of a direction comes from: it has one alone, from where it is, or from the one before.

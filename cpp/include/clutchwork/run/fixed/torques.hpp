@@ -7,7 +7,7 @@
 namespace clutchwork::fixed {
 
 /// Part of a step at which a state is taken whose own rate is z over the step: a half where it is slow, so that energy
-/// is kept, and as much more as an exponential needs. docs/theory/fixed-steps.md (8)
+/// is kept, and as much more as an exponential needs. docs/theory/fixed-steps.md (10)
 inline double share_of(double z) {
   if (!(z < -1e-3)) return 0.5;
   return z < -40 ? 1 + 1 / z : 1 / z + 1 / (1 - exp(z));
@@ -49,7 +49,8 @@ inline void eliminate_states(Run& ws, const Branch<double>& b, double h) {
   double fastest = 0, matrix[most_own_states * most_own_states];
   for (int i = 0; i < n; ++i) fastest = smaller(fastest, block[i * n + i]);
   const double share = share_of(h * fastest);
-  for (int i = 0; i < n * n; ++i) matrix[i] = -share * h * block[i];
+  // what grows by itself is taken explicitly
+  for (int i = 0; i < n * n; ++i) matrix[i] = i % (n + 1) == 0 && block[i] > 0 ? 0 : -share * h * block[i];
   for (int i = 0; i < n; ++i) matrix[i * n + i] += 1;
   int pivot[most_own_states];
   // a singular block is taken explicitly
