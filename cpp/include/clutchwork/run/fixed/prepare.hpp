@@ -27,6 +27,11 @@ inline bool is_limited(int kind) {
   return visit_contact(kind, [](auto tag) { return LimitedContact<typename decltype(tag)::type>; });
 }
 
+/// Whether the bristles of a law change too fast for steps of one length: it says so.
+inline bool is_too_fast(int law) {
+  return visit_law(law, [](auto tag) { return requires { decltype(tag)::type::fixed_steps; }; });
+}
+
 /// Why a direction is refused; `taken`: it is not.
 inline Refusal refusal_of(const Run& ws, int d) {
   const System& sys = ws.sys;
@@ -37,6 +42,7 @@ inline Refusal refusal_of(const Run& ws, int d) {
   const int c = d - int(sys.elements), law = sys.contact_law[c];
   if (sys.contact_place[c] >= 0) return Refusal::stop;
   if (is_loaded(sys.contact_kind[c])) return Refusal::load_dependent;
+  if (is_too_fast(law)) return Refusal::bristles;
   return is_chattering_law(law) ? Refusal::chatters : Refusal::taken;
 }
 

@@ -116,6 +116,17 @@ inline bool hold_rigid(Run& ws, double h, double tolerance) {
   return true;
 }
 
+/// Whether the laws of the contacts know the slips at the end of the step; else `detail` tells which does not.
+inline bool are_known(Run& ws) {
+  for (int c = 0; c < ws.sys.contacts; ++c) {
+    double seen = 0;
+    if (!ws.contact.loaded[c] || table_room(ws, c, ws.fixed.end_slip[c], seen) >= 0) continue;
+    ws.detail.component = int(ws.sys.elements) + c, ws.detail.value = seen;
+    return false;
+  }
+  return true;
+}
+
 /// Everything of one step but its taking over. `running`: it is there.
 inline Status make_step(Run& ws, const double t, const double h, const double end) {
   Fixed<double>& f = ws.fixed;
@@ -133,6 +144,7 @@ inline Status make_step(Run& ws, const double t, const double h, const double en
   if (!find_impulses(ws, h)) return Status::no_mode;
   if (!hold_rigid(ws, h, tolerance)) return Status::jammed;
   move(ws, h);
+  if (!are_known(ws)) return Status::out_of_table;
   for (int c = 0; c < ws.sys.contacts; ++c) f.mode[c] = mode_behind(ws, c, tolerance);
   double sum = 0;
   for (int i = 0; i < ws.sys.speeds; ++i) sum += f.change[i] * 0;
