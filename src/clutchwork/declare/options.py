@@ -70,8 +70,8 @@ class Options:
     )
     method: Method = setting(
         "",
-        "integrator: auto chooses for each smooth phase; rodas5p for any model, dopri5 where nothing is stiff; fixed has "
-        "steps of one length with bounded cost",
+        "integrator: auto chooses for each smooth phase; rodas5p for any model, dopri5 where nothing is stiff; fixed "
+        "has steps of one length with bounded cost",
         default="auto",
         choices=tuple(METHODS),
         core=True,

@@ -111,10 +111,10 @@ inline bool find_impulses(Run& ws, double h) {
   }
   for (int c = 0; c < nc; ++c) {
     const double own = larger(-f.lower[c], f.upper[c]), ratio = own > 0 && own < infinity ? largest / own : 1;
-    f.weight[c] = 1e-10 * f.mobility[c * nc + c] * smaller(ratio * ratio, 1e4);
+    f.weight[c] = 1e-10 * f.mobility[c * nc + c] * smaller(ratio, 1e6);
   }
-  const Boxes boxes{nc, f.mobility, f.gradient, f.lower, f.upper, f.weight, f.impulse, f.end_slip, f.side, f.solved,
-                    f.free_factor, f.list};
+  const Boxes boxes{nc,        f.mobility, f.gradient, f.lower,  f.upper,       f.weight,
+                    f.impulse, f.end_slip, f.side,     f.solved, f.free_factor, f.list};
   for (int round = 0; round < most_rounds; ++round) {
     for (int c = 0; c < nc; ++c) {
       if (!(f.lower[c] < f.upper[c])) f.side[c] = 1;

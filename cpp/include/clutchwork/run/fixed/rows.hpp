@@ -10,10 +10,10 @@ namespace clutchwork::fixed {
 
 /// A step, or none that has passed: where a row is.
 struct Look {
-  double t = 0;                   ///< [s] start of the step
-  double h = 0;                   ///< [s] its length
-  const double *change, *given;   ///< change of the speeds and of the prescribed ones over h
-  const double *state, *torque;   ///< change of the states; mean torque of each direction
+  double t = 0;                  ///< [s] start of the step
+  double h = 0;                  ///< [s] its length
+  const double *change, *given;  ///< change of the speeds and of the prescribed ones over h
+  const double *state, *torque;  ///< change of the states; mean torque of each direction
 };
 
 /// Power that supply i gives over a step in its middle: work on the shaft, and heat.
@@ -107,7 +107,8 @@ inline void fill_row(Run& ws, const Look& look, double s, double length, const i
   }
   for (int i = 0; i < sys.supplies; ++i) {
     const int d = sys.supply_element[i];
-    row[at.supply_power + i] = supply_power(ws, i, look.torque[d], rate_of(ws, d) + s * f.rate_change[d], row + at.state);
+    row[at.supply_power + i] =
+        supply_power(ws, i, look.torque[d], rate_of(ws, d) + s * f.rate_change[d], row + at.state);
   }
   for (int c = 0; c < sys.contacts; ++c) {
     const int resisted = look.torque[ne + c] > 0 ? backward : forward;

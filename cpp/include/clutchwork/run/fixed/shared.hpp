@@ -34,7 +34,8 @@ inline void change_shared(Run& ws, double h) {
   double* middle = f.predicted;
   for (int d = 0; d < ws.n_directions; ++d) middle[d] = f.start_rate[d] + 0.5 * f.rate_change[d];
   shared_rates(ws, middle, f.mean, f.state_ahead, ws.observed.state_rates);
-  for (std::int64_t s = sys.states - sys.shared; s < sys.states; ++s) f.state_change[s] = h * ws.observed.state_rates[s];
+  for (std::int64_t s = sys.states - sys.shared; s < sys.states; ++s)
+    f.state_change[s] = h * ws.observed.state_rates[s];
   for (int i = 0; i < sys.processes; ++i) change_process(ws, i, h);
 }
 

@@ -65,7 +65,8 @@ inline void eliminate_states(Run& ws, const Branch<double>& b, double h) {
   }
   for (int i = 0; i < n; ++i) {
     const int s = b.state + i;
-    f.state_force[s] = f.state_ahead[s] + dot(n, matrix + i * n, fixed), f.state_slope[s] = dot(n, matrix + i * n, slope);
+    f.state_force[s] = f.state_ahead[s] + dot(n, matrix + i * n, fixed),
+    f.state_slope[s] = dot(n, matrix + i * n, slope);
     f.state_share[s] = share;
   }
 }
