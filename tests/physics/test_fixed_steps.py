@@ -75,12 +75,12 @@ def shift(step: float) -> tuple[cw.Trajectory, cw.Trajectory]:
 
 def test_the_shift_of_the_six_speed_gearbox() -> None:
     run, exact = shift(1e-3)
-    # 1e-2 rad/s: asked for, of pressures with slopes; 8.7e-3 measured
+    # 1e-2 rad/s: asked for, of pressures with slopes; 9.3e-3 measured
     assert max(np.abs(run[f"{name}.speed"] - exact[f"{name}.speed"]).max() for name in SPEEDS) < 1e-2
     assert [(e.element, e.before, e.after, e.cause) for e in run.events] == [
         (e.element, e.before, e.after, e.cause) for e in exact.events
     ]
-    # a hundredth of a step, and more for locking, which the shaft behind it disturbs
+    # hundredths of a step: 1e-7 s and 1.2e-5 s measured
     for mine, theirs, most in zip(run.events, exact.events, (1e-5, 5e-5), strict=True):
         assert mine.time == pytest.approx(theirs.time, abs=most)
     # what a step is, not the grid of rows, decides
@@ -95,7 +95,7 @@ def test_the_launch_and_shift_of_an_independent_solver() -> None:
     run = d.simulate(case["t_end_s"], times=times, **fixed(1e-3))
     for name in SPEEDS:
         off = np.abs(run[f"{name}.speed"] - reference[name]).max()
-        # a ten-thousandth of the full scale of some 200 rad/s
+        # twice the bound of the shift alone, as the launch adds an engagement; 1.4e-2 measured
         assert off < 2e-2, name
 
 
