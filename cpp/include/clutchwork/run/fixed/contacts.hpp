@@ -105,7 +105,8 @@ inline bool find_impulses(Run& ws, double h) {
     const int mode = ws.contact.mode[c];
     f.box[c] = mode == locked || mode == open ? at_rest : sliding;
     set_box(ws, c, h);
-    f.side[c] = mode == forward ? -1 : mode == backward ? 1 : 0;
+    // no guess is at a bound that is not there
+    f.side[c] = mode == forward && f.lower[c] > -infinity ? -1 : mode == backward && f.upper[c] < infinity ? 1 : 0;
     const double most = larger(-f.lower[c], f.upper[c]);
     if (most < infinity) largest = larger(largest, most);
   }

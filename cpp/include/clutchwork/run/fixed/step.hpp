@@ -127,7 +127,20 @@ inline bool are_known(Run& ws) {
   return true;
 }
 
-/// Everything of one step but its taking over. `running`: it is there.
+/// Freewheels that hold no more give way for good: whether there are any. docs/theory/contacts.md, rule 3
+inline bool gives_way(Run& ws, double tolerance) {
+  const Fixed<double>& f = ws.fixed;
+  bool any = false;
+  for (int c = 0; c < ws.sys.contacts; ++c) {
+    const bool held = ws.contact.loaded[c] && f.side[c] == 1 && f.lower[c] < f.upper[c];
+    if (!held || free_way(ws, c) <= 0 || f.end_slip[c] >= -tolerance) continue;
+    fail(ws, c);
+    any = true;
+  }
+  return any;
+}
+
+/// Everything of one step but its taking over, again without each freewheel that gives way. `running`: it is there.
 inline Status make_step(Run& ws, const double t, const double h, const double end) {
   Fixed<double>& f = ws.fixed;
   const double tolerance = slip_tolerance(ws);
@@ -143,6 +156,7 @@ inline Status make_step(Run& ws, const double t, const double h, const double en
   move_freely(ws, h);
   if (!find_impulses(ws, h)) return Status::no_mode;
   if (!hold_rigid(ws, h, tolerance)) return Status::jammed;
+  if (gives_way(ws, tolerance)) return make_step(ws, t, h, end);
   move(ws, h);
   if (!are_known(ws)) return Status::out_of_table;
   for (int c = 0; c < ws.sys.contacts; ++c) f.mode[c] = mode_behind(ws, c, tolerance);
