@@ -76,8 +76,11 @@ inline int solve_set(const Boxes& p) {
 inline int wanted_side(const Boxes& p, int i) {
   if (p.side[i] == 0) return p.x[i] < p.lower[i] ? -1 : p.x[i] > p.upper[i] ? 1 : 0;
   if (!(p.lower[i] < p.upper[i])) return p.side[i];
-  const double s = slope_of(p, i) + p.weight[i] * p.x[i];
-  return s * p.side[i] > 0 ? 0 : p.side[i];
+  const double* row = p.mobility + i * p.n;
+  double s = p.gradient[i] + p.weight[i] * p.x[i], size = abs(p.gradient[i]);
+  for (int j = 0; j < p.n; ++j) s += row[j] * p.x[j], size += abs(row[j] * p.x[j]);
+  // what round-off makes of a slip decides nothing
+  return s * p.side[i] > 1e-14 * size ? 0 : p.side[i];
 }
 
 /// Take the weight out again: one step with the exact matrix, within the bounds.
