@@ -63,12 +63,12 @@ inline double angle_at(const Run& ws, const Look& look, double s, int n) {
   return ws.angle[n] + s * look.h * (start + 0.5 * s * node_value(ws.sys, n, look.change, look.given));
 }
 
-/// The numbers of one row at the share s of a step; `length`: that of the step by which accelerations are told.
-inline void fill_row(Run& ws, const Look& look, double s, double length, const int* mode, double* row) {
+/// Speeds, accelerations and angles of the nodes, and the states; `length`: that of the step by which accelerations are
+/// told.
+inline void fill_motion(const Run& ws, const Look& look, double s, double length, double* row) {
   const System& sys = ws.sys;
   const Fixed<double>& f = ws.fixed;
   const RowLayout& at = ws.row;
-  const int nd = ws.n_directions, ne = int(sys.elements);
   // as they are behind the step, to the last bit
   for (int i = 0; i < sys.speeds; ++i) f.ahead[i] = ws.v[i] + s * look.change[i];
   for (int p = 0; p < sys.prescribed; ++p) f.given_ahead[p] = f.given[p] + s * look.given[p];
@@ -78,47 +78,66 @@ inline void fill_row(Run& ws, const Look& look, double s, double length, const i
     row[at.angle + n] = ws.options.angles ? angle_at(ws, look, s, n) : ws.angle[n];
   }
   for (int i = 0; i < sys.states; ++i) row[at.state + i] = ws.state[i] + s * look.state[i];
-  for (int d = 0; d < nd; ++d) {
-    row[d < ne ? at.element_torque + d : at.contact_torque + d - ne] = look.torque[d];
-    row[d < ne ? at.element_work + d : at.contact_work + d - ne] = ws.work[d];
-  }
-  for (int p = 0; p < sys.prescribed; ++p) row[at.prescribed_work + p] = ws.prescribed_work[p];
-  for (int i = 0; i < sys.supplies; ++i) row[at.supply_energy + i] = ws.supplied[i];
-  for (int m = 0; m < sys.meters; ++m) row[at.meter_energy + m] = ws.metered[m];
-  if (ws.options.work && s > 0) {
-    energies_until(ws, look, s, [&](int i, double energy) {
-      const int source = i - nd, supply = source - int(sys.prescribed), meter = supply - int(sys.supplies);
-      if (i < nd)
-        row[i < ne ? at.element_work + i : at.contact_work + i - ne] += energy;
-      else if (supply < 0)
-        row[at.prescribed_work + source] += energy;
-      else
-        row[meter < 0 ? at.supply_energy + supply : at.meter_energy + meter] += energy;
-    });
-  }
-  const double t = look.t + s * look.h;
-  inputs_at(ws, t);
-  if (ws.in.n_shared_refs > 0) shared_inputs(ws, row + at.state);
+}
+
+/// Torques and energies.
+inline void fill_energies(Run& ws, const Look& look, double s, double* row) {
+  const System& sys = ws.sys;
+  const RowLayout& at = ws.row;
+  const int nd = ws.n_directions, ne = int(sys.elements);
+  auto place = [&](int i) -> double& {
+    const int source = i - nd, supply = source - int(sys.prescribed), meter = supply - int(sys.supplies);
+    if (i < nd) return row[i < ne ? at.element_work + i : at.contact_work + i - ne];
+    if (supply < 0) return row[at.prescribed_work + source];
+    return row[meter < 0 ? at.supply_energy + supply : at.meter_energy + meter];
+  };
+  for (int d = 0; d < nd; ++d) row[d < ne ? at.element_torque + d : at.contact_torque + d - ne] = look.torque[d];
+  for (int i = 0; i < fitted_powers(ws); ++i) place(i) = work_of(ws, i);
+  if (!ws.options.work || s == 0) return;
+  energies_until(ws, look, s, [&](int i, double energy) { place(i) += energy; });
+}
+
+/// Flows and powers of supplies, at the inputs of the row.
+inline void fill_flows(Run& ws, const Look& look, double s, double* row) {
+  const System& sys = ws.sys;
+  const Fixed<double>& f = ws.fixed;
+  const RowLayout& at = ws.row;
   if (sys.flows > 0) {
     // as they are with the torques of the step
-    for (int d = 0; d < nd; ++d) f.predicted[d] = f.start_rate[d] + s * f.rate_change[d];
+    for (int d = 0; d < ws.n_directions; ++d) f.predicted[d] = f.start_rate[d] + s * f.rate_change[d];
     shared_rates(ws, f.predicted, look.torque, row + at.state, ws.observed.state_rates);
     for (int i = 0; i < sys.flows; ++i) row[at.flow + i] = flow_value(ws, i);
   }
   for (int i = 0; i < sys.supplies; ++i) {
     const int d = sys.supply_element[i];
-    row[at.supply_power + i] =
-        supply_power(ws, i, look.torque[d], rate_of(ws, d) + s * f.rate_change[d], row + at.state);
+    const double rate = rate_of(ws, d) + s * f.rate_change[d];
+    row[at.supply_power + i] = supply_power(ws, i, look.torque[d], rate, row + at.state);
   }
+}
+
+/// Mode of contact c as a row tells it; one that never sticks moves the way it slips.
+inline int shown_mode(const Run& ws, int c, int mode, double s) {
+  if (!ws.contact.loaded[c]) return open;
+  if (!ws.contact.compliant[c] || mode == locked) return mode;
+  const int d = int(ws.sys.elements) + c;
+  return ws.fixed.start_rate[d] + s * ws.fixed.rate_change[d] < 0 ? backward : forward;
+}
+
+/// The numbers of one row at the share s of a step.
+inline void fill_row(Run& ws, const Look& look, double s, double length, const int* mode, double* row) {
+  const System& sys = ws.sys;
+  const double t = look.t + s * look.h;
+  fill_motion(ws, look, s, length, row);
+  fill_energies(ws, look, s, row);
+  inputs_at(ws, t);
+  if (ws.in.n_shared_refs > 0) shared_inputs(ws, row + ws.row.state);
+  fill_flows(ws, look, s, row);
   for (int c = 0; c < sys.contacts; ++c) {
-    const int resisted = look.torque[ne + c] > 0 ? backward : forward;
-    int shown = ws.contact.loaded[c] ? mode[c] : int(open);
-    if (ws.contact.loaded[c] && ws.contact.compliant[c] && mode[c] != locked)
-      shown = f.start_rate[ne + c] + s * f.rate_change[ne + c] < 0 ? backward : forward;
-    row[at.contact_mode + c] = shown;
-    row[at.contact_capacity + c] = static_torque(ws, c, resisted);
+    const int resisted = look.torque[sys.elements + c] > 0 ? backward : forward;
+    row[ws.row.contact_mode + c] = shown_mode(ws, c, mode[c], s);
+    row[ws.row.contact_capacity + c] = static_torque(ws, c, resisted);
   }
-  for (int i = 0; i < sys.inputs; ++i) row[at.input + i] = signal_value(ws, i, t);
+  for (int i = 0; i < sys.inputs; ++i) row[ws.row.input + i] = signal_value(ws, i, t);
 }
 
 }  // namespace clutchwork::fixed
