@@ -207,7 +207,7 @@ REFUSALS = {
     4: ("chatters", "its law jumps with the sign of the slip and never sticks"),
     5: ("many_speeds", f"the model has more than {FEW_SPEEDS} independent speeds"),
     6: ("massless", "a shaft has no inertia"),
-    7: ("bristles", "the bristles of its law change within any step"),
+    7: ("bristles", "its bristles or teeth move within any step"),
 }
 
 # what a run counts, in order: (name, meaning)

@@ -32,11 +32,17 @@ inline bool is_too_fast(int law) {
   return visit_law(law, [](auto tag) { return requires { decltype(tag)::type::fixed_steps; }; });
 }
 
+/// The same of the teeth of an element.
+inline bool has_teeth(int kind) {
+  return visit_torque(kind, [](auto tag) { return std::is_same_v<typename decltype(tag)::type, elements::DogClutch>; });
+}
+
 /// Why a direction is refused; `taken`: it is not.
 inline Refusal refusal_of(const Run& ws, int d) {
   const System& sys = ws.sys;
   if (d < sys.elements) {
     const int kind = sys.element_kind[d];
+    if (has_teeth(kind)) return Refusal::bristles;
     return has_varying_ratio(kind) ? Refusal::varying_ratio : Refusal::taken;
   }
   const int c = d - int(sys.elements), law = sys.contact_law[c];
