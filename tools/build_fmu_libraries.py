@@ -14,7 +14,7 @@ from pathlib import Path
 
 ROOT = Path(__file__).resolve().parent.parent
 MADE = ROOT / "build" / "fmu"
-NAMES = ("c_api", "components", "local", "lanes", "phases_small", "phases_sparse", "phases_full")
+NAMES = ("c_api", "components", "local", "lanes", "phases_small", "phases_sparse", "phases_full", "fixed_steps")
 # what a step spends its time in is inlined by force, as in the native build
 HOT = {"phases_small", "phases_sparse"}
 FLAGS = (

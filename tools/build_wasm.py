@@ -20,7 +20,7 @@ MADE = ROOT / "build" / "wasm"
 WASM = ROOT / "src" / "clutchwork" / "page" / "static" / "core.wasm"
 HEADER = ROOT / "cpp" / "include" / "clutchwork" / "c_api.h"
 
-NAMES = ("c_api", "components", "phases_small", "phases_sparse", "phases_full")
+NAMES = ("c_api", "components", "phases_small", "phases_sparse", "phases_full", "fixed_steps")
 SOURCES = [ROOT / "cpp" / "src" / f"{name}.cpp" for name in NAMES]
 # what a step spends its time in is inlined by force, as in the native build
 HOT = {"phases_small", "phases_sparse"}

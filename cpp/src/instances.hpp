@@ -55,6 +55,9 @@ CLUTCHWORK_SIZED(extern, 2)
 CLUTCHWORK_SIZED(extern, 3)
 CLUTCHWORK_SIZED(extern, 4)
 #endif
+#ifndef CLUTCHWORK_FIXED
+extern template Status advance_fixed(Workspace<double>&, double, Sink&);
+#endif
 #ifndef CLUTCHWORK_INSTANCES
 CLUTCHWORK_SMALL_PHASES(extern)
 CLUTCHWORK_PHASES(extern, SparseForm)

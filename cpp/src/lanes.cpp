@@ -120,6 +120,7 @@ std::int64_t group_size(const System& sys) { return has_small_phases(sys) ? grou
 void advance_group(Workspace<double>* const* runs, Sink* sinks, Status* statuses, int n, double t_end, void* memory) {
   bool together = n > 1 && lane_kernel() != nullptr && has_small_phases(runs[0]->sys);
   for (int i = 1; together && i < n; ++i) together = same_structure(runs[0]->sys, runs[i]->sys);
+  for (int i = 0; i < n; ++i) together = together && runs[i]->options.method != Method::fixed;
   if (together) return advance_lanes(runs, sinks, statuses, n, t_end, memory);
   for (int i = 0; i < n; ++i) statuses[i] = advance(*runs[i], t_end, sinks[i]);
 }

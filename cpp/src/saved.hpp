@@ -26,6 +26,8 @@ void describe(W& ws, A& a) {
   a.whole(ws.guard.n_faulty, 0, nc), a.whole(ws.contact.failed, -1, nc - 1), a.whole(ws.guard.n_loads, 0, nc);
   a.whole(ws.guard.reversals, 0, 1 << 30), a.whole(ws.guard.reversals_since, 0, most);
   a.number(ws.guard.balanced_at), a.number(ws.guard.zero, 0, 1e300);
+  a.number(ws.fixed.time), a.number(ws.fixed.before, 0, 1e300), a.number(ws.fixed.origin);
+  a.whole(ws.fixed.count, 0, most);
   a.number(ws.in.time), a.whole(ws.events.n, 0, EventBuffer::room + 2 * nc);
   a.whole(ws.detail.component, -1, nd - 1), a.number(ws.detail.value), a.whole(ws.detail.row, -1, ws.row.size - 1);
 
@@ -331,6 +333,13 @@ inline void resume(Workspace<double>& ws, const unsigned char* bytes) {
   for (int c = 0; c < sys.contacts; ++c) ws.contact.compliant[c] = is_compliant_law(sys.contact_law[c]);
   for (int d = 0; d < ws.n_directions; ++d) ws.branch_of[d] = -1;
   place_cursors(ws);
+  // fixed steps have no phase
+  if (ws.options.method == Method::fixed && ws.fixed.time == ws.time) {
+    read();
+    rest_fresh(ws);
+    ws.fresh_phase = true;
+    return;
+  }
   // so was the choice of the method
   ws.options.method = ws.reduced.method;
   const bool entered = enter_mode(ws, true);

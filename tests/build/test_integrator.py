@@ -30,7 +30,8 @@ def write_header(copy: Path) -> None:
 
 
 def write_name(copy: Path) -> None:
-    edit(copy / NAMES, '"dopri5": 2', '"dopri5": 2, "ralston": 3')
+    # steps of one length, which have no phases, are the last
+    edit(copy / NAMES, '"fixed": 3', '"ralston": 3, "fixed": 4')
 
 
 def write_line(copy: Path) -> None:

@@ -12,6 +12,7 @@ from clutchwork.declare.layout import (
     FIELDS,
     METHODS,
     MODES,
+    REFUSALS,
     ROW,
     STATISTICS,
     STATUS,
@@ -51,6 +52,9 @@ def codes() -> Iterator[str]:
     yield f"enum class Cause : int {{ initial = 0, {numbered(causes)} }};"
     yield f"inline constexpr int last_cause = {max(CAUSES)};"
     yield f"enum class Method : int {{ {numbered(METHODS.items())} }};"
+    refusals = [(name, number) for number, (name, _) in REFUSALS.items()]
+    yield "/// Why fixed steps do not take a component."
+    yield f"enum class Refusal : int {{ taken = 0, {numbered(refusals)} }};"
     yield f"inline constexpr int last_method = {max(METHODS.values())};"
 
 

@@ -1,5 +1,6 @@
 #pragma once
 #include <clutchwork/workspace/contacts.hpp>
+#include <clutchwork/workspace/fixed.hpp>
 #include <clutchwork/workspace/loads.hpp>
 #include <clutchwork/workspace/motion.hpp>
 #include <clutchwork/workspace/moved.hpp>
@@ -50,6 +51,7 @@ struct Workspace {
   Stages<T> stages;
   Full<T> full;
   Ratios<T> ratios;
+  Fixed<T> fixed;
   StepEnd<T> step_start{}, step_end{};
   Guards guard;
   Observed<T> observed;
@@ -81,7 +83,7 @@ void lay_out(W& ws, A& a) {
   a.take(ws.branch, n.directions), a.take(ws.branch_of, n.directions);
   auto each = [&](auto&... part) { (std::remove_reference_t<decltype(part)>::lay_out(part, a, n), ...); };
   each(ws.in, ws.contact, ws.event_context, ws.held, ws.loads, ws.coupled, ws.set, ws.problem, ws.decision, ws.geometry,
-       ws.reduced, ws.rows, ws.jacobian, ws.shared, ws.stages, ws.full, ws.ratios, ws.step_start, ws.step_end, ws.guard,
+       ws.reduced, ws.rows, ws.jacobian, ws.shared, ws.stages, ws.full, ws.ratios, ws.fixed, ws.step_start, ws.step_end, ws.guard,
        ws.observed, ws.out, ws.events, ws.moved);
 }
 

@@ -196,8 +196,19 @@ CAUSES = {
     10: ("impact", "the gap of a stop closed: it bounced, or holds"),
 }
 
-# integrators by name, with their numbers in the core; auto chooses between the others
-METHODS = {"auto": 0, "rodas5p": 1, "dopri5": 2}
+# integrators by name, with their numbers in the core; auto chooses between those with steps of any length
+METHODS = {"auto": 0, "rodas5p": 1, "dopri5": 2, "fixed": 3}
+
+# what the method "fixed" does not take, by number: (name, what it is); a number keeps its meaning
+REFUSALS = {
+    1: ("varying_ratio", "its ratio varies"),
+    2: ("stop", "it is a stop with impacts"),
+    3: ("load_dependent", "its friction follows its own load"),
+    4: ("chatters", "its law jumps with the sign of the slip and never sticks"),
+    5: ("many_speeds", f"the model has more than {FEW_SPEEDS} independent speeds"),
+    6: ("massless", "a shaft has no inertia"),
+    7: ("bristles", "its bristles or teeth move within any step"),
+}
 
 # what a run counts, in order: (name, meaning)
 STATISTICS = (
@@ -253,11 +264,16 @@ STATUS = (
         "give a named gear more efficiency, or the shafts that drive it more inertia",
     ),
     ("interrupted", "the run was interrupted", "what was computed up to here is kept in .trajectory"),
+    (
+        "refused",
+        "steps of one length do not take the motion",
+        "choose the method auto, or model it otherwise: the guide on fixed steps lists what they take",
+    ),
 )
 # the numbers of these
 STATUSES = [name for name, *_ in STATUS]
-DONE, ROWS_FULL, EVENTS_FULL, NOT_FINITE, INTERRUPTED = (
-    STATUSES.index(name) for name in ("done", "rows_full", "events_full", "not_finite", "interrupted")
+DONE, ROWS_FULL, EVENTS_FULL, NOT_FINITE, INTERRUPTED, REFUSED = (
+    STATUSES.index(name) for name in ("done", "rows_full", "events_full", "not_finite", "interrupted", "refused")
 )
 
 

@@ -26,7 +26,7 @@ if TYPE_CHECKING:
 
     from clutchwork.declare.option_fields import OptionFields
 
-Method = Literal["auto", "rodas5p", "dopri5"]
+Method = Literal["auto", "rodas5p", "dopri5", "fixed"]
 Output = Literal["smooth", "steps"]
 
 # A grid finer than this does not fit into memory together with its signals.
@@ -70,11 +70,13 @@ class Options:
     )
     method: Method = setting(
         "",
-        "integrator: auto chooses for each smooth phase; rodas5p for any model, dopri5 where nothing is stiff",
+        "integrator: auto chooses for each smooth phase; rodas5p for any model, dopri5 where nothing is stiff; fixed "
+        "has steps of one length with bounded cost",
         default="auto",
         choices=tuple(METHODS),
         core=True,
     )
+    step: float = setting("s", "length of the steps of method fixed", default=1e-3, above=0.0, core=True)
     first_step: float | None = setting(
         "s",
         "first step of the solver in each smooth phase (by default the solver chooses it)",

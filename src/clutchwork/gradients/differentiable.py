@@ -242,6 +242,8 @@ def made(
     """The function for what is asked for."""
     if side is not None and side not in SIDES:
         raise UseError("gradient", [f"side is {quote(side)}: give 'left' or 'right', or leave it out"])
+    if options.method == "fixed":
+        raise UseError("gradient", ['method is "fixed": derivatives follow the motion between events; leave it out'])
     try:
         outputs = asked(of)
         _refuse(system, outputs)

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from clutchwork.base.errors import caller
-from clutchwork.declare.layout import STATUS
+from clutchwork.declare.layout import REFUSALS, STATUS
 from clutchwork.declare.schema import Role, specs
 from clutchwork.model.parts import is_stop
 from clutchwork.run.trajectory import Trajectory
@@ -71,6 +71,9 @@ def explain(status: int, component: Any, time: float, value: float, quantity: st
     Parameters: quantity, a number of the row or a signal in place of a component; jam, which of `JAMS`.
     """
     name, message, remedy = STATUS[status]
+    if name == "refused":
+        where = f"{component.name!r}" if component is not None else "this model"
+        return f'method is "fixed": {message} of {where}, for {REFUSALS[int(value)][1]}: {remedy}'
     if jam:
         message, remedy = JAMS[jam][0], JAMS[jam][1] or remedy
     if name == "zeno" and quantity:

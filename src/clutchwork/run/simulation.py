@@ -19,7 +19,7 @@ from clutchwork.base.classes import dataclass
 from clutchwork.base.errors import OptionError, UseError, caller
 from clutchwork.base.quote import quote
 from clutchwork.declare.calls import explained
-from clutchwork.declare.layout import DONE, INTERRUPTED, NOT_FINITE, STATUSES
+from clutchwork.declare.layout import DONE, INTERRUPTED, NOT_FINITE, REFUSED, STATUSES
 from clutchwork.declare.options import Options, instants
 from clutchwork.results.events import from_rows
 from clutchwork.run.begin import advance, begun, reach, row_of, state_of
@@ -272,6 +272,15 @@ def message_of(system: System, status: int, run: Any) -> str:
     return told(system, status, index, at, value, column)
 
 
+def refuse_fixed(system: System, options: Options) -> None:
+    """OptionError where the method is "fixed" and does not take a model, before anything runs."""
+    if options.method != "fixed":
+        return
+    run = begun(system, options, None)
+    if advance(run, options.t_start) == REFUSED:
+        raise OptionError([message_of(system, REFUSED, run)])
+
+
 def names_part(system: System, index: int) -> bool:
     """Whether a number is that of an element or a contact."""
     return 0 <= index < len(acting(system))
@@ -313,6 +322,8 @@ def _named(job: Job, recording: Recording, seconds: float) -> Trajectory:
     message = ""
     if status != DONE:
         message = message_of(system, status, run)
+    if status == REFUSED:
+        raise OptionError([message])
     return Trajectory(
         system=system,
         options=job.options,

@@ -24,7 +24,7 @@ from clutchwork.run.control import Controller, controllers, guests_of, instants,
 from clutchwork.run.failure import warn_of_faults
 from clutchwork.run.readings import Readings
 from clutchwork.run.settings import without_end
-from clutchwork.run.simulation import Assembles, begin_of, message_of, model_of
+from clutchwork.run.simulation import Assembles, begin_of, message_of, model_of, refuse_fixed
 from clutchwork.run.trajectory import SimulationError
 from clutchwork.stepping.outside import Outside
 from clutchwork.stepping.past import Past
@@ -75,6 +75,7 @@ class Simulator:
         self._system = model_of("cw.Simulator", model, options)
         given = dict(changes) | (begin_of(self._system, start, changes) if start is not None else {})
         self._options = without_end(self._system.settings, given, options)
+        refuse_fixed(self._system, self._options)
         self._run = begun(self._system, self._options, start)
         self._run.expect_inputs(True)
         self._instant, self._readout = np.empty(1), Readout(self._system, self._options, self._run.row_size)

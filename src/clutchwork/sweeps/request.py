@@ -11,6 +11,7 @@ from clutchwork.base.errors import ModelError, UseError
 from clutchwork.base.quote import quote
 from clutchwork.declare.options import Options
 from clutchwork.run.settings import merged, refuse_endless
+from clutchwork.run.simulation import refuse_fixed
 from clutchwork.sweeps.asking import ROWS
 from clutchwork.sweeps.axes import Plan
 from clutchwork.sweeps.mistakes import few
@@ -79,6 +80,7 @@ def ordered(
     end, settled = merged(system.settings, chosen, options)
     plain = settled.changed({"dt": None, "times": None})
     refuse_endless(system.inputs, plain.t_start, end, plain.max_steps)
+    refuse_fixed(system, plain)
     # tables have a column of their own for it
     if "status" in wanted:
         raise UseError(call, ["an output is called 'status', as the column that says how a run ended; rename it"])

@@ -5,6 +5,8 @@ namespace clutchwork::laws {
 
 /// LuGre with a range of deflection that is purely elastic: no drift below it.
 struct ElastoPlastic : Bristles<ElastoPlastic>, declared::ElastoPlastic {
+  static constexpr bool fixed_steps = false;  ///< bristles change within any step
+
   template <class T>
   struct Params : StribeckCurve<T> {
     T stiffness;  ///< [1/rad]

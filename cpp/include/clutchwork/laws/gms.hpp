@@ -6,6 +6,8 @@ namespace clutchwork::laws {
 /// Generalised Maxwell-slip: elements in parallel that stick and slip, each with its share of the Stribeck curve; the
 /// states are their coefficients.
 struct GMS : declared::GMS {
+  static constexpr bool fixed_steps = false;  ///< bristles change within any step
+
   template <class T>
   struct Params : StribeckCurve<T> {
     Curve<T> elements;  ///< rad -> 1

@@ -5,6 +5,8 @@ namespace clutchwork::laws {
 
 /// Hysteresis with non-local memory from Maxwell-slip elements; the states are the coefficients of the elements.
 struct Leuven : declared::Leuven {
+  static constexpr bool fixed_steps = false;  ///< bristles change within any step
+
   template <class T>
   struct Params : StribeckCurve<T> {
     Curve<T> elements;  ///< rad -> 1

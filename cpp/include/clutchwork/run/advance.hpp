@@ -249,9 +249,10 @@ Status reach_phase(Workspace<T>& ws) {
   return ws.fresh_phase && !enter_mode(ws) ? Status::no_mode : Status::running;
 }
 
-/// Integrate to t_end, or up to the first event, filling rows and events on the way.
+/// Integrate to t_end, or up to the first event, by phases between events, filling rows and events on the way.
 template <class T>
-Status advance(Workspace<T>& ws, double t_end, Sink& sink, bool to_event = false) {
+Status advance_by_events(Workspace<T>& ws, double t_end, Sink& sink, bool to_event = false) {
+  ws.fixed.ready = false;
   Status status = reach_phase(ws);
   while (status == Status::running) {
     status = dispatch(ws, t_end, sink);
@@ -260,6 +261,22 @@ Status advance(Workspace<T>& ws, double t_end, Sink& sink, bool to_event = false
     if (status == Status::running) status = reach_phase(ws);
   }
   return status;
+}
+
+/// Steps of one length: run/fixed/advance.hpp.
+template <class T>
+Status advance_fixed(Workspace<T>& ws, double t_end, Sink& sink);
+
+/// Integrate to t_end by the method that is wanted; `to_event`: steps of one length go on beyond events.
+template <class T>
+Status advance(Workspace<T>& ws, double t_end, Sink& sink, bool to_event = false) {
+  // other scalars, which tests compute with, have no steps of one length
+  if constexpr (std::is_same_v<T, double>) {
+    if (ws.options.method == Method::fixed) return advance_fixed(ws, t_end, sink);
+    // what fixed steps have left is decided anew
+    if (ws.started && ws.fixed.time == ws.time) ws.params_changed = true, ws.fixed.time = -infinity;
+  }
+  return advance_by_events(ws, t_end, sink, to_event);
 }
 
 }  // namespace clutchwork

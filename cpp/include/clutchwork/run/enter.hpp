@@ -60,7 +60,7 @@ bool is_soft(Workspace<T>& ws) {
 template <class T>
 Method choose_method(Workspace<T>& ws) {
   if constexpr (has_tangents<T>) return first_method(true);
-  const Method wanted = ws.options.method;
+  const Method wanted = ws.options.method == Method::fixed ? Method::auto_ : ws.options.method;
   // speeds without inertia are algebraic: only a method for stiff motion carries them
   if (has_massless(ws)) return is_for_stiff(wanted) ? wanted : first_method(true);
   if (wanted != Method::auto_) return wanted;

@@ -1,0 +1,124 @@
+#pragma once
+#include <clutchwork/run/advance.hpp>
+#include <clutchwork/run/fixed/step.hpp>
+
+/// A run with fixed steps: docs/theory/fixed-steps.md
+namespace clutchwork::fixed {
+
+/// Rows of the step that fall before its end, or onto it.
+inline Status emit_step(Run& ws, const Look& look, double end, Sink& sink) {
+  const Fixed<double>& f = ws.fixed;
+  const std::int64_t size = ws.row.size;
+  auto emit = [&](double t, double s) {
+    double* row = sink.rows + size * sink.at;
+    fill_row(ws, look, s, look.h, s < 1 ? ws.contact.mode : f.mode, row);
+    if (!is_finite(ws, row)) return false;
+    if (sink.steps > 0) sink.times[sink.at] = t;
+    ++sink.at;
+    return true;
+  };
+  for (std::int64_t k = 1; k <= sink.steps; ++k) {
+    const double s = double(k) / double(sink.steps);
+    if (!emit(k == sink.steps ? end : look.t + s * look.h, s)) return Status::not_finite;
+  }
+  while (sink.steps == 0 && sink.at < sink.count && sink.times[sink.at] <= end) {
+    const double t = sink.times[sink.at];
+    if (!emit(t, t == end ? 1.0 : smaller(1.0, larger(0.0, (t - look.t) / look.h)))) return Status::not_finite;
+  }
+  return Status::running;
+}
+
+/// Rows that are wanted at the present time, the end of the last step.
+inline Status emit_present(Run& ws, Sink& sink) {
+  Fixed<double>& f = ws.fixed;
+  while (sink.steps == 0 && sink.at < sink.count && sink.times[sink.at] <= ws.time) {
+    for (int d = 0; d < ws.n_directions; ++d) f.start_rate[d] = rate_row(ws.sys, d).times(ws.v), f.rate_change[d] = 0;
+    const Look look{ws.time, 0, f.gain, f.given_gain, f.state_gain, f.torque};
+    double* row = sink.rows + ws.row.size * sink.at;
+    fill_row(ws, look, 0, f.before, ws.contact.mode, row);
+    if (!is_finite(ws, row)) return Status::not_finite;
+    ++sink.at;
+  }
+  return Status::running;
+}
+
+/// Where a run begins, or goes on from steps of another method: the modes of that instant, decided as for these.
+inline Status begin(Run& ws, Sink& sink) {
+  const Status status = advance_by_events(ws, ws.started ? ws.time : ws.options.t_start, sink);
+  if (status != Status::done) return status;
+  Fixed<double>& f = ws.fixed;
+  f.time = f.origin = ws.time;
+  f.before = 0, f.count = 0;
+  for (int p = 0; p < ws.sys.prescribed; ++p) f.given[p] = ws.in.prescribed[p];
+  for (int i = 0; i < ws.sys.speeds; ++i) f.gain[i] = 0;
+  for (int i = 0; i < ws.sys.states; ++i) f.state_gain[i] = 0;
+  for (int p = 0; p < ws.sys.prescribed; ++p) f.given_gain[p] = 0;
+  for (int d = 0; d < ws.n_directions; ++d) f.kept[d] = f.torque[d] = 0;
+  for (int i = 0; i < 2 * ws.sys.contacts; ++i) f.held[i] = 0;
+  f.length = 0, f.ready = false;
+  return Status::running;
+}
+
+/// What must be there before a step.
+inline Status make_ready(Run& ws, Sink& sink) {
+  Fixed<double>& f = ws.fixed;
+  if (!f.ready && !takes(ws)) return Status::refused;
+  // its first row is there once, where rows are those of steps
+  const bool begun = ws.started && f.time == ws.time;
+  if (!begun || (f.before == 0 && sink.steps == 0)) {
+    const Status status = begin(ws, sink);
+    if (status != Status::running) return status;
+  }
+  if (ws.params_changed) ws.params_changed = f.ready = false, f.length = 0;
+  if (!f.ready) pack_all(ws);
+  return Status::running;
+}
+
+inline Status what_is_spent(const Run& ws, const Sink& sink) {
+  if (sink.steps > 0 && sink.at + sink.steps + 2 > sink.count) return Status::rows_full;
+  if (ws.events.n >= EventBuffer::room) return Status::events_full;
+  if (ws.statistics.steps + ws.statistics.rejected >= ws.options.max_steps) return Status::too_many_steps;
+  if (ws.statistics.events > ws.options.max_events) return Status::too_many_events;
+  return ws.poll.stops() ? Status::interrupted : Status::running;
+}
+
+/// One step onto the grid, or onto the end where that comes before. `running`: the run goes on.
+inline Status take_step(Run& ws, double t_end, Sink& sink) {
+  Fixed<double>& f = ws.fixed;
+  const double step = ws.options.step, grid = f.origin + double(f.count + 1) * step;
+  const bool last = grid > t_end - 1e-9 * step, cut = grid > t_end + 1e-9 * step;
+  const double end = last ? t_end : grid, h = cut ? t_end - ws.time : step, start = ws.time;
+  const Status made = make_step(ws, start, h, end);
+  if (made != Status::running) return made;
+  const Look look{start, h, f.change, f.given_change, f.state_change, f.mean};
+  const Status shown = emit_step(ws, look, end, sink);
+  if (shown != Status::running) return shown;
+  take_over(ws, look);
+  report(ws, look, end);
+  cross_pieces(ws);
+  for (int d = 0; d < ws.n_directions; ++d) f.torque[d] = f.mean[d];
+  for (int i = 0; i < 2 * ws.sys.contacts; ++i) f.held[i] = f.limit[i];
+  ws.time = f.time = end;
+  ++f.count;
+  if (cut) f.origin = end, f.count = 0;
+  return Status::running;
+}
+
+}  // namespace clutchwork::fixed
+
+namespace clutchwork {
+
+template <class T>
+Status advance_fixed(Workspace<T>& ws, double t_end, Sink& sink) {
+  Status status = fixed::make_ready(ws, sink);
+  if (status == Status::running) status = fixed::emit_present(ws, sink);
+  while (status == Status::running && ws.time < t_end) {
+    status = fixed::what_is_spent(ws, sink);
+    if (status == Status::running) status = fixed::take_step(ws, t_end, sink);
+  }
+  // whatever else goes on from here begins a phase
+  if (ws.started) ws.fresh_phase = true, inputs_at(ws, ws.time), shared_inputs(ws, ws.state);
+  return status == Status::running ? Status::done : status;
+}
+
+}  // namespace clutchwork

@@ -1,0 +1,157 @@
+#pragma once
+#include <clutchwork/components/branch.hpp>
+#include <clutchwork/contacts/sticking.hpp>
+#include <clutchwork/run/fixed/boxes.hpp>
+#include <clutchwork/run/fixed/prepare.hpp>
+
+/// Contacts over one step: what each can hold, their impulses and their modes. docs/theory/fixed-steps.md
+namespace clutchwork::fixed {
+
+/// How many rounds of boxes there are at most: a contact goes from one box to the other twice.
+inline constexpr int most_rounds = 4;
+/// Which bound a contact has: its static torque, its kinetic one, or that for good.
+enum Box : int { at_rest, sliding, slips_on };
+
+/// Which contacts are pressed in the middle of the step.
+inline void see_loads(Run& ws) {
+  for (int c = 0; c < ws.sys.contacts; ++c) {
+    Branch<double>& b = ws.branch[ws.sys.elements + c];
+    ws.contact.pressed[c] = b.pressed = load_of(ws, c) > 0;
+    ws.contact.loaded[c] = is_closed(ws, c);
+  }
+}
+
+/// Kinetic and static torque of a contact in the middle of the step, against slip backward and forward.
+/// docs/theory/fixed-steps.md (6)
+inline void see_contact(Run& ws, int c) {
+  Fixed<double>& f = ws.fixed;
+  const int d = int(ws.sys.elements) + c, mode = ws.contact.mode[c];
+  double *kinetic = f.kinetic + 2 * c, *limit = f.limit + 2 * c;
+  kinetic[0] = kinetic[1] = limit[0] = limit[1] = 0;
+  Branch<double>& b = ws.branch[d];
+  if (!ws.contact.loaded[c]) return;
+  if (ws.contact.fault[c] == cannot_unlock && mode == locked) {
+    kinetic[0] = kinetic[1] = limit[0] = limit[1] = infinity;
+    return;
+  }
+  if (!b.pressed || b.compliant) return;
+  const double size = mode == locked || mode == open ? 0.0 : larger(mode * f.predicted[d], 0.0);
+  if (f.bends[d] == settling) ws.piece[d] = b.piece = sliding_piece(ws, d, size);
+  b.sign = forward;
+  kinetic[1] = larger(-contact_torque(ws, b, size, ws.state, ws.observed.state_rates), 0.0);
+  kinetic[0] = kinetic[1];
+  limit[0] = limit[1] = larger(static_torque(ws, c, forward), kinetic[1]);
+  if (!f.two_sided[c]) return;
+  b.sign = backward;
+  kinetic[0] = larger(contact_torque(ws, b, -size, ws.state, ws.observed.state_rates), 0.0);
+  limit[0] = larger(static_torque(ws, c, backward), kinetic[0]);
+}
+
+/// Bounds of the impulse of a contact.
+inline void set_box(Run& ws, int c, double h) {
+  Fixed<double>& f = ws.fixed;
+  const double *kinetic = f.kinetic + 2 * c, *limit = f.limit + 2 * c;
+  auto torque = [&](int way) {
+    if (f.box[c] == at_rest) return limit[way];
+    // one that breaks away holds its static torque up to there
+    return f.box[c] == slips_on ? kinetic[way] + f.share[c] * (limit[way] - kinetic[way]) : kinetic[way];
+  };
+  f.lower[c] = -h * torque(1), f.upper[c] = h * torque(0);
+  const int way = ws.contact.loaded[c] ? free_way(ws, c) : 0;
+  if (way > 0) f.upper[c] = h * freewheel_limit(ws, c);
+  if (way < 0) f.lower[c] = -infinity;
+  if (is_rigid(ws, c)) f.lower[c] = f.upper[c] = 0;
+}
+
+/// Where in the step a contact breaks away that was locked in the last one, -1/2 to 1/2: there the torque that would
+/// hold it passes what it can hold, both as lines through the middles of the two steps. docs/theory/fixed-steps.md (8)
+inline double share_at_limit(const Run& ws, int c, int way, double h) {
+  const Fixed<double>& f = ws.fixed;
+  if (f.before == 0 || f.time != ws.time) return 0;
+  const int sign = way == 0 ? 1 : -1;
+  const double needed = sign * (f.impulse[c] - f.end_slip[c] / f.mobility[c * ws.sys.contacts + c]) / h;
+  const double before = sign * f.torque[ws.sys.elements + c];
+  const double over = needed - f.limit[2 * c + way], rise = over - (before - f.held[2 * c + way]);
+  if (!(rise > 0)) return 0;
+  return larger(-0.5, smaller(0.5, 0.5 - 0.5 * (1 + f.before / h) * over / rise));
+}
+
+/// Contacts whose torques say otherwise than their boxes: they get the other one. Whether there are any.
+/// docs/theory/fixed-steps.md, rule 3
+inline bool change_boxes(Run& ws, double h) {
+  Fixed<double>& f = ws.fixed;
+  bool any = false;
+  for (int c = 0; c < ws.sys.contacts; ++c) {
+    const int side = f.side[c], way = side < 0 ? 1 : 0;
+    // both boxes are the same
+    if (side == 0 || f.box[c] == slips_on || !(f.kinetic[2 * c + way] < f.limit[2 * c + way])) continue;
+    const double start = f.start_rate[ws.sys.elements + c], end = f.end_slip[c];
+    const bool breaks = f.box[c] == at_rest && end != 0, turns = f.box[c] == sliding && start * end < 0;
+    if (!breaks && !turns) continue;
+    if (breaks) f.share[c] = f.box[c] == at_rest && ws.contact.mode[c] == locked ? share_at_limit(ws, c, way, h) : 0;
+    f.box[c] = breaks ? slips_on : at_rest;
+    set_box(ws, c, h);
+    any = true;
+  }
+  return any;
+}
+
+/// Impulses of all contacts, for slips at the end without them in `gradient`. False: they were not found.
+inline bool find_impulses(Run& ws, double h) {
+  Fixed<double>& f = ws.fixed;
+  const int nc = int(ws.sys.contacts);
+  double largest = 0;
+  for (int c = 0; c < nc; ++c) {
+    const int mode = ws.contact.mode[c];
+    f.box[c] = mode == locked || mode == open ? at_rest : sliding;
+    set_box(ws, c, h);
+    // no guess is at a bound that is not there
+    f.side[c] = mode == forward && f.lower[c] > -infinity ? -1 : mode == backward && f.upper[c] < infinity ? 1 : 0;
+    const double most = larger(-f.lower[c], f.upper[c]);
+    if (most < infinity) largest = larger(largest, most);
+  }
+  for (int c = 0; c < nc; ++c) {
+    const double own = larger(-f.lower[c], f.upper[c]), ratio = own > 0 && own < infinity ? largest / own : 1;
+    f.weight[c] = 1e-10 * f.mobility[c * nc + c] * smaller(ratio, 1e6);
+  }
+  const Boxes boxes{nc,        f.mobility, f.gradient, f.lower,  f.upper,       f.weight,
+                    f.impulse, f.end_slip, f.side,     f.solved, f.free_factor, f.list};
+  for (int round = 0; round < most_rounds; ++round) {
+    for (int c = 0; c < nc; ++c) {
+      if (!(f.lower[c] < f.upper[c])) f.side[c] = 1;
+    }
+    const int tried = solve(boxes);
+    if (tried < 0) return false;
+    ws.statistics.evaluations += tried;
+    if (!change_boxes(ws, h)) break;
+  }
+  return true;
+}
+
+/// Mode of a contact behind the step.
+inline int mode_behind(const Run& ws, int c, double tolerance) {
+  const Fixed<double>& f = ws.fixed;
+  const int mode = ws.contact.mode[c];
+  if (ws.contact.compliant[c] && !contact_one_way(ws, c)) return mode;
+  const double slip = f.end_slip[c];
+  if (is_rigid(ws, c) || !ws.contact.loaded[c]) {
+    if (abs(slip) > tolerance) return slip > 0 ? forward : backward;
+    return ws.contact.loaded[c] ? locked : mode == locked ? open : mode;
+  }
+  if (f.side[c] == 0) return locked;
+  return f.lower[c] < f.upper[c] ? -f.side[c] : slip > 0 ? forward : backward;
+}
+
+/// Where in the step a contact comes to rest or turns: by its slip with the kinetic torque alone.
+/// docs/theory/fixed-steps.md (7)
+inline double share_at_zero(const Run& ws, int c, double h) {
+  const Fixed<double>& f = ws.fixed;
+  const int nc = int(ws.sys.contacts), way = f.start_rate[ws.sys.elements + c] > 0 ? 1 : 0;
+  const double start = f.start_rate[ws.sys.elements + c];
+  const double alone = (way ? -1 : 1) * h * f.kinetic[2 * c + way];
+  const double end = f.end_slip[c] + f.mobility[c * nc + c] * (alone - f.impulse[c]);
+  if (start == 0 || !(start * end < 0)) return 1;
+  return start / (start - end);
+}
+
+}  // namespace clutchwork::fixed

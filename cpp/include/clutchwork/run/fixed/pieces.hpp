@@ -1,0 +1,46 @@
+#pragma once
+#include <clutchwork/components/pieces.hpp>
+#include <clutchwork/run/fixed/prepare.hpp>
+#include <clutchwork/run/processes.hpp>
+
+/// Pieces that elements, laws and processes leave by their own states: at the ends of steps.
+/// docs/theory/fixed-steps.md, rule 4
+namespace clutchwork::fixed {
+
+/// How many pieces one component may pass in a step.
+inline constexpr int most_passed = 4;
+
+/// The piece of a switching branch at the present state.
+inline void cross_branch(Run& ws, Branch<double>& b) {
+  const PresentRates<double> rate(ws, b);
+  const double still[most_ways] = {};
+  int& heading = ws.heading[b.direction];
+  b.piece = ws.piece[b.direction];
+  const int now = rate.at[0] < 0 ? backward : forward;
+  if (now != heading && rate.at[0] != 0) {
+    if (law_turns(b)) b.piece = law_cross(ws, b, rate.at, turned, ws.state);
+    heading = now;
+  }
+  const int d = b.direction, edges = edge_count(ws, d);
+  if (edges > 0) b.piece += piece_of(ws, d, rate.at[0]) - b.piece % (edges + 1);
+  b.piece = settled_piece(ws, b, rate.at);
+  for (int round = 0; round < most_passed; ++round) {
+    int who = 0;
+    if (law_margin(ws, b, rate.at, still, ws.state, ws.observed.state_rates, who).v >= 0) break;
+    b.piece = law_cross(ws, b, rate.at, who, ws.state);
+  }
+  ws.piece[b.direction] = b.piece;
+}
+
+/// All of them behind a step.
+inline void cross_pieces(Run& ws) {
+  const System& sys = ws.sys;
+  for (int d = 0; d < ws.n_directions; ++d) {
+    if (ws.fixed.bends[d] == crossing) cross_branch(ws, ws.branch[d]);
+  }
+  if (sys.shared == 0) return;
+  shared_inputs(ws, ws.state);
+  if (ws.guard.n_processes > 0) find_process_pieces(ws);
+}
+
+}  // namespace clutchwork::fixed

@@ -1,0 +1,129 @@
+#pragma once
+#include <clutchwork/components/component.hpp>
+#include <clutchwork/components/dense.hpp>
+#include <clutchwork/components/direction.hpp>
+#include <clutchwork/components/kinds.hpp>
+#include <clutchwork/components/pieces.hpp>
+#include <clutchwork/contacts/sticking.hpp>
+#include <clutchwork/motion/branches.hpp>
+#include <clutchwork/workspace.hpp>
+
+/// What fixed steps take, and their matrices.
+namespace clutchwork::fixed {
+
+using Run = Workspace<double>;
+
+inline bool has_varying_ratio(int kind) {
+  return visit_torque(kind, [](auto tag) { return TransmissionElement<typename decltype(tag)::type>; });
+}
+/// Whether a component leaves its piece where its own margin says so.
+inline bool crosses(int kind, int law) {
+  auto of = [](auto tag) { return SwitchingLaw<typename decltype(tag)::type>; };
+  return law < 0 ? visit_torque(kind, of) : visit_law(law, of);
+}
+/// Where the piece of a direction comes from: it has one alone, from where it is, or from the one before.
+enum Bend : int { straight, settling, crossing };
+inline bool is_limited(int kind) {
+  return visit_contact(kind, [](auto tag) { return LimitedContact<typename decltype(tag)::type>; });
+}
+
+/// Whether the bristles of a law change too fast for steps of one length: it says so.
+inline bool is_too_fast(int law) {
+  return visit_law(law, [](auto tag) { return requires { decltype(tag)::type::fixed_steps; }; });
+}
+
+/// The same of the teeth of an element.
+inline bool has_teeth(int kind) {
+  return visit_torque(kind, [](auto tag) { return std::is_same_v<typename decltype(tag)::type, elements::DogClutch>; });
+}
+
+/// Why a direction is refused; `taken`: it is not.
+inline Refusal refusal_of(const Run& ws, int d) {
+  const System& sys = ws.sys;
+  if (d < sys.elements) {
+    const int kind = sys.element_kind[d];
+    if (has_teeth(kind)) return Refusal::bristles;
+    return has_varying_ratio(kind) ? Refusal::varying_ratio : Refusal::taken;
+  }
+  const int c = d - int(sys.elements), law = sys.contact_law[c];
+  if (sys.contact_place[c] >= 0) return Refusal::stop;
+  if (is_loaded(sys.contact_kind[c])) return Refusal::load_dependent;
+  if (is_too_fast(law)) return Refusal::bristles;
+  return is_chattering_law(law) ? Refusal::chatters : Refusal::taken;
+}
+
+/// Whether fixed steps take all of a system; else `detail` tells what they do not, and why.
+inline bool takes(Run& ws) {
+  const System& sys = ws.sys;
+  auto refuse = [&](int component, Refusal why) {
+    ws.detail.component = component, ws.detail.value = double(int(why));
+    return false;
+  };
+  for (int d = 0; d < ws.n_directions; ++d) {
+    const Refusal why = refusal_of(ws, d);
+    if (why != Refusal::taken) return refuse(d, why);
+  }
+  if (!is_few(sys)) return refuse(-1, Refusal::many_speeds);
+  for (int i = 0; i < sys.speeds; ++i) {
+    if (sys.massless[i] != 0) return refuse(-1, Refusal::massless);
+  }
+  return true;
+}
+
+/// The branches of all directions, each at the place of its direction, and what they ask for in every step.
+inline void pack_all(Run& ws) {
+  Fixed<double>& f = ws.fixed;
+  const int ne = int(ws.sys.elements);
+  int block = 0;
+  ws.n_rates = 0;
+  for (int d = 0; d < ws.n_directions; ++d) {
+    pack(ws, d, d < ne ? 0 : forward, block);
+    const bool first = d >= ne || ws.sys.element_way[d] == 0;
+    const bool settles = d < ne ? is_settling(ws.sys.element_kind[d]) : is_settling_law(ws.sys.contact_law[d - ne]);
+    const bool crossed = d < ne ? crosses(ws.sys.element_kind[d], -1) : crosses(0, ws.sys.contact_law[d - ne]);
+    f.bends[d] = !first ? straight : crossed ? crossing : settles || edge_count(ws, d) > 0 ? settling : straight;
+  }
+  ws.n_branches = ws.n_rates;
+  for (int c = 0; c < ws.sys.contacts; ++c) {
+    const int kind = ws.sys.contact_kind[c];
+    f.two_sided[c] = is_shaped(kind) || is_limited(kind);
+  }
+  f.ready = true;
+}
+
+/// Factor of M - h/2 sum(slope d'd), the answers to the impulses of the contacts and their mobility.
+/// docs/theory/fixed-steps.md (5)
+inline bool factor_step(Run& ws, double h) {
+  const System& sys = ws.sys;
+  Fixed<double>& f = ws.fixed;
+  const int nv = int(sys.speeds), ne = int(sys.elements), nc = int(sys.contacts);
+  for (int i = 0; i < nv * nv; ++i) f.factor[i] = 0;
+  for (int i = 0; i < nv; ++i) {
+    const auto row = mass_row(sys, i);
+    for (int k = 0; k < row.n && row.column[k] <= i; ++k) f.factor[i * nv + row.column[k]] = row.value[k];
+  }
+  for (int d = 0; d < ws.n_directions; ++d) {
+    if (f.kept[d] == 0) continue;
+    const auto row = rate_row(sys, d);
+    for (int a = 0; a < row.n; ++a) {
+      for (int b = 0; b <= a; ++b)
+        f.factor[row.column[a] * nv + row.column[b]] -= 0.5 * h * f.kept[d] * row.value[a] * row.value[b];
+    }
+  }
+  if (!cholesky(nv, f.factor, nv)) return false;
+  for (int c = 0; c < nc; ++c) {
+    double* x = f.answer + c * nv;
+    const auto row = rate_row(sys, ne + c);
+    for (int i = 0; i < nv; ++i) x[i] = 0;
+    for (int k = 0; k < row.n; ++k) x[row.column[k]] = row.value[k];
+    forward_solve(nv, f.factor, nv, x), backward_solve(nv, f.factor, nv, x);
+  }
+  for (int c = 0; c < nc; ++c) {
+    for (int o = 0; o < nc; ++o) f.mobility[c * nc + o] = rate_row(sys, ne + c).times(f.answer + o * nv);
+  }
+  f.length = h;
+  ++ws.statistics.jacobians;
+  return true;
+}
+
+}  // namespace clutchwork::fixed

@@ -1,0 +1,143 @@
+#pragma once
+#include <clutchwork/components/branch.hpp>
+#include <clutchwork/components/direction.hpp>
+#include <clutchwork/motion/shared.hpp>
+#include <clutchwork/run/fixed/prepare.hpp>
+#include <clutchwork/run/output.hpp>
+
+/// Rows of fixed steps, and what is summed over them: docs/theory/fixed-steps.md
+namespace clutchwork::fixed {
+
+/// A step, or none that has passed: where a row is.
+struct Look {
+  double t = 0;                  ///< [s] start of the step
+  double h = 0;                  ///< [s] its length
+  const double *change, *given;  ///< change of the speeds and of the prescribed ones over h
+  const double *state, *torque;  ///< change of the states; mean torque of each direction
+};
+
+/// Power that supply i gives over a step in its middle: work on the shaft, and heat.
+inline double supply_power(const Run& ws, int i, double torque, double rate, const double* state) {
+  const Branch<double>& b = ws.branch[ws.sys.supply_element[i]];
+  return torque * rate + branch_heat(ws, b, rate, state, Dual<double, 1>(torque)).v;
+}
+
+/// Energies since the start of a step up to its share s, given one after another: directions, sources, supplies,
+/// meters. docs/theory/fixed-steps.md (9)
+template <class Add>
+void energies_until(const Run& ws, const Look& look, double s, Add&& add) {
+  const System& sys = ws.sys;
+  const Fixed<double>& f = ws.fixed;
+  const int np = int(sys.prescribed), nv = int(sys.speeds), nd = ws.n_directions;
+  const double span = s * look.h;
+  int at = 0;
+  for (int d = 0; d < nd; ++d) add(at++, span * look.torque[d] * (f.start_rate[d] + 0.5 * s * f.rate_change[d]));
+  for (int p = 0; p < np; ++p) {
+    double impulse = 0;
+    for (int i = 0; i < nv; ++i) impulse += sys.mass_prescribed[i * np + p] * look.change[i];
+    for (int n = 0; n < sys.nodes; ++n) {
+      for (int o = 0; o < np; ++o)
+        impulse += sys.basis_prescribed[n * np + p] * sys.inertia[n] * sys.basis_prescribed[n * np + o] * look.given[o];
+    }
+    for (int d = 0; d < nd; ++d) impulse -= look.h * look.torque[d] * prescribed_share(ws, d, p);
+    add(at++, s * impulse * (f.given[p] + 0.5 * s * look.given[p]));
+  }
+  for (int i = 0; i < sys.supplies; ++i) {
+    const int d = sys.supply_element[i];
+    for (int k = 0; k < sys.states; ++k) f.state_ahead[k] = ws.state[k] + 0.5 * s * look.state[k];
+    add(at++, span * supply_power(ws, i, look.torque[d], f.start_rate[d] + 0.5 * s * f.rate_change[d], f.state_ahead));
+  }
+  for (int m = 0; m < sys.meters; ++m) {
+    const double impulse = meter_sum<double>(
+        sys, m, [&](int n) { return node_value(sys, n, look.change, look.given); },
+        [&](int d) { return look.h * look.torque[d]; });
+    const int n = sys.meter_node[m];
+    const double start = node_value(sys, n, ws.v, f.given), gain = node_value(sys, n, look.change, look.given);
+    add(at++, s * impulse * (start + 0.5 * s * gain));
+  }
+}
+
+/// Angle of node n at the share s of a step.
+inline double angle_at(const Run& ws, const Look& look, double s, int n) {
+  const double start = node_value(ws.sys, n, ws.v, ws.fixed.given);
+  return ws.angle[n] + s * look.h * (start + 0.5 * s * node_value(ws.sys, n, look.change, look.given));
+}
+
+/// Speeds, accelerations and angles of the nodes, and the states; `length`: that of the step by which accelerations are
+/// told.
+inline void fill_motion(const Run& ws, const Look& look, double s, double length, double* row) {
+  const System& sys = ws.sys;
+  const Fixed<double>& f = ws.fixed;
+  const RowLayout& at = ws.row;
+  // as they are behind the step, to the last bit
+  for (int i = 0; i < sys.speeds; ++i) f.ahead[i] = ws.v[i] + s * look.change[i];
+  for (int p = 0; p < sys.prescribed; ++p) f.given_ahead[p] = f.given[p] + s * look.given[p];
+  for (int n = 0; n < sys.nodes; ++n) {
+    row[at.speed + n] = node_value(sys, n, f.ahead, f.given_ahead);
+    row[at.acceleration + n] = length > 0 ? node_value(sys, n, look.change, look.given) / length : 0;
+    row[at.angle + n] = ws.options.angles ? angle_at(ws, look, s, n) : ws.angle[n];
+  }
+  for (int i = 0; i < sys.states; ++i) row[at.state + i] = ws.state[i] + s * look.state[i];
+}
+
+/// Torques and energies.
+inline void fill_energies(Run& ws, const Look& look, double s, double* row) {
+  const System& sys = ws.sys;
+  const RowLayout& at = ws.row;
+  const int nd = ws.n_directions, ne = int(sys.elements);
+  auto place = [&](int i) -> double& {
+    const int source = i - nd, supply = source - int(sys.prescribed), meter = supply - int(sys.supplies);
+    if (i < nd) return row[i < ne ? at.element_work + i : at.contact_work + i - ne];
+    if (supply < 0) return row[at.prescribed_work + source];
+    return row[meter < 0 ? at.supply_energy + supply : at.meter_energy + meter];
+  };
+  for (int d = 0; d < nd; ++d) row[d < ne ? at.element_torque + d : at.contact_torque + d - ne] = look.torque[d];
+  for (int i = 0; i < fitted_powers(ws); ++i) place(i) = work_of(ws, i);
+  if (!ws.options.work || s == 0) return;
+  energies_until(ws, look, s, [&](int i, double energy) { place(i) += energy; });
+}
+
+/// Flows and powers of supplies, at the inputs of the row.
+inline void fill_flows(Run& ws, const Look& look, double s, double* row) {
+  const System& sys = ws.sys;
+  const Fixed<double>& f = ws.fixed;
+  const RowLayout& at = ws.row;
+  if (sys.flows > 0) {
+    // as they are with the torques of the step
+    for (int d = 0; d < ws.n_directions; ++d) f.predicted[d] = f.start_rate[d] + s * f.rate_change[d];
+    shared_rates(ws, f.predicted, look.torque, row + at.state, ws.observed.state_rates);
+    for (int i = 0; i < sys.flows; ++i) row[at.flow + i] = flow_value(ws, i);
+  }
+  for (int i = 0; i < sys.supplies; ++i) {
+    const int d = sys.supply_element[i];
+    const double rate = rate_of(ws, d) + s * f.rate_change[d];
+    row[at.supply_power + i] = supply_power(ws, i, look.torque[d], rate, row + at.state);
+  }
+}
+
+/// Mode of contact c as a row tells it; one that never sticks moves the way it slips.
+inline int shown_mode(const Run& ws, int c, int mode, double s) {
+  if (!ws.contact.loaded[c]) return open;
+  if (!ws.contact.compliant[c] || mode == locked) return mode;
+  const int d = int(ws.sys.elements) + c;
+  return ws.fixed.start_rate[d] + s * ws.fixed.rate_change[d] < 0 ? backward : forward;
+}
+
+/// The numbers of one row at the share s of a step.
+inline void fill_row(Run& ws, const Look& look, double s, double length, const int* mode, double* row) {
+  const System& sys = ws.sys;
+  const double t = look.t + s * look.h;
+  fill_motion(ws, look, s, length, row);
+  fill_energies(ws, look, s, row);
+  inputs_at(ws, t);
+  if (ws.in.n_shared_refs > 0) shared_inputs(ws, row + ws.row.state);
+  fill_flows(ws, look, s, row);
+  for (int c = 0; c < sys.contacts; ++c) {
+    const int resisted = look.torque[sys.elements + c] > 0 ? backward : forward;
+    row[ws.row.contact_mode + c] = shown_mode(ws, c, mode[c], s);
+    row[ws.row.contact_capacity + c] = static_torque(ws, c, resisted);
+  }
+  for (int i = 0; i < sys.inputs; ++i) row[ws.row.input + i] = signal_value(ws, i, t);
+}
+
+}  // namespace clutchwork::fixed

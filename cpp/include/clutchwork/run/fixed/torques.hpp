@@ -1,0 +1,140 @@
+#pragma once
+#include <clutchwork/components/branch.hpp>
+#include <clutchwork/run/fixed/prepare.hpp>
+#include <clutchwork/run/settle.hpp>
+
+/// Torques of elements and of laws that never stick, in the middle of a step: docs/theory/fixed-steps.md
+namespace clutchwork::fixed {
+
+/// Part of a step at which a state is taken whose own rate is z over the step: a half where it is slow, so that energy
+/// is kept, and as much more as an exponential needs. docs/theory/fixed-steps.md (10)
+inline double share_of(double z) {
+  if (!(z < -1e-3)) return 0.5;
+  return z < -40 ? 1 + 1 / z : 1 / z + 1 / (1 - exp(z));
+}
+
+/// The piece of a branch at the rates of its ways.
+inline void settle_piece(Run& ws, Branch<double>& b, const double* rate) {
+  const int d = b.direction, edges = edge_count(ws, d);
+  if (edges > 0) ws.piece[d] += piece_of(ws, d, rate[0]) - ws.piece[d] % (edges + 1);
+  b.piece = ws.piece[d];
+  ws.piece[d] = b.piece = settled_piece(ws, b, rate);
+}
+
+/// An element of several ways: each torque with its slope by its own rate, the states by their rates in the middle.
+inline void see_ways(Run& ws, Branch<double>& b, double h) {
+  Fixed<double>& f = ws.fixed;
+  using S = Dual<double, most_ways>;
+  const double* rate = f.predicted + b.direction;
+  if (f.bends[b.direction] == settling) settle_piece(ws, b, rate);
+  S rates[most_ways], own[most_own_states], state_rates[most_own_states], input[most_inputs], torque[most_ways];
+  for (int i = 0; i < b.ways; ++i) rates[i] = S::variable(rate[i], i);
+  for (int i = 0; i < b.states; ++i) own[i] = S(f.state_ahead[b.state + i]);
+  for (int i = 0; i < b.inputs; ++i) input[i] = S(b.input[i]);
+  element_torques(ws, b, rates, own, input, state_rates, torque);
+  for (int i = 0; i < b.ways; ++i)
+    f.force[b.direction + i] = torque[i].v, f.slope[b.direction + i] = smaller(torque[i].d[i], 0.0);
+  for (int i = 0; i < b.states; ++i) {
+    const int s = b.state + i;
+    f.state_force[s] = ws.state[s] + h * state_rates[i].v, f.state_slope[s] = 0, f.state_share[s] = 1;
+  }
+}
+
+/// Own states of a branch in the middle: fixed part and slope by the rate, in state_force and state_slope.
+inline void eliminate_states(Run& ws, const Branch<double>& b, double h) {
+  Fixed<double>& f = ws.fixed;
+  const Jacobian<double>& j = ws.jacobian;
+  const double* block = j.g_state + j.block[b.direction];
+  const int n = b.states;
+  double fastest = 0, matrix[most_own_states * most_own_states];
+  for (int i = 0; i < n; ++i) fastest = smaller(fastest, block[i * n + i]);
+  const double share = share_of(h * fastest);
+  // what grows by itself is taken explicitly
+  for (int i = 0; i < n * n; ++i) matrix[i] = i % (n + 1) == 0 && block[i] > 0 ? 0 : -share * h * block[i];
+  for (int i = 0; i < n; ++i) matrix[i * n + i] += 1;
+  int pivot[most_own_states];
+  // a singular block is taken explicitly
+  if (!invert(n, matrix, pivot)) {
+    for (int i = 0; i < n * n; ++i) matrix[i] = i % (n + 1) == 0;
+  }
+  double fixed[most_own_states], slope[most_own_states];
+  for (int i = 0; i < n; ++i) {
+    const int s = b.state + i;
+    fixed[i] = ws.state[s] - f.state_ahead[s] + share * h * ws.observed.state_rates[s];
+    slope[i] = share * h * j.g_rate[s];
+  }
+  for (int i = 0; i < n; ++i) {
+    const int s = b.state + i;
+    f.state_force[s] = f.state_ahead[s] + dot(n, matrix + i * n, fixed),
+    f.state_slope[s] = dot(n, matrix + i * n, slope);
+    f.state_share[s] = share;
+  }
+}
+
+/// Torque over the rate in the middle: force + slope rate. docs/theory/fixed-steps.md (4)
+inline void see_branch(Run& ws, Branch<double>& b, double h) {
+  Fixed<double>& f = ws.fixed;
+  const int d = b.direction;
+  if (b.ways > 1) return see_ways(ws, b, h);
+  const double rate = f.predicted[d];
+  if (f.bends[d] == settling) settle_piece(ws, b, &rate);
+  const Partial<double> p =
+      branch_partial(ws, b, rate, 0.0, f.state_ahead, ws.observed.state_rates, state_partials(ws, d));
+  double torque = p.torque, slope = p.by_rate;
+  if (b.states > 0) {
+    eliminate_states(ws, b, h);
+    for (int i = 0; i < b.states; ++i) {
+      const int s = b.state + i;
+      // the middle of the state from where it is taken
+      const double half = 0.5 / f.state_share[s];
+      const double middle = ws.state[s] + half * (f.state_force[s] - ws.state[s]);
+      torque += ws.jacobian.f_state[s] * (middle - f.state_ahead[s]);
+      slope += ws.jacobian.f_state[s] * half * f.state_slope[s];
+    }
+  }
+  f.force[d] = torque, f.slope[d] = smaller(slope, 0.0);
+}
+
+/// Whether the matrix has the slopes of the torques well enough: states exactly, so that their energy is kept.
+inline bool is_kept(const Run& ws, const Branch<double>& b, double h) {
+  const Fixed<double>& f = ws.fixed;
+  const int d = b.direction;
+  const double off = abs(f.slope[d] - f.kept[d]);
+  if (b.states > 0 && b.ways == 1) return off <= 1e-14 * abs(f.slope[d]);
+  return 0.5 * h * off * ws.geometry.own[d] <= 0.02;
+}
+
+/// Whether a direction has a torque that is a function of its rate and states.
+inline bool is_smooth(const Run& ws, int d) { return d < ws.sys.elements || ws.branch[d].compliant; }
+
+/// All of them; the matrix follows where they have changed. False: it is not positive definite.
+inline bool see_torques(Run& ws, double h) {
+  Fixed<double>& f = ws.fixed;
+  bool kept = true;
+  for (int d = 0; d < ws.n_directions; ++d) {
+    if (!is_smooth(ws, d)) continue;
+    // the first way has seen the others
+    if (ws.branch[d].ways > 0) see_branch(ws, ws.branch[d], h);
+    kept = kept && is_kept(ws, ws.branch[d], h);
+  }
+  for (int d = 0; !kept && d < ws.n_directions; ++d) f.kept[d] = is_smooth(ws, d) ? f.slope[d] : 0;
+  if (!(kept && f.length == h) && !factor_step(ws, h)) return false;
+  for (int d = 0; d < ws.n_directions; ++d) {
+    if (is_smooth(ws, d)) f.force[d] -= f.kept[d] * f.predicted[d];
+  }
+  return true;
+}
+
+/// The states at the end, for the rates that were found.
+inline void end_states(Run& ws) {
+  Fixed<double>& f = ws.fixed;
+  for (int d = 0; d < ws.n_directions; ++d) {
+    const Branch<double>& b = ws.branch[d];
+    if (!is_smooth(ws, d)) continue;
+    const double off = f.start_rate[d] + 0.5 * f.rate_change[d] - f.predicted[d];
+    for (int s = b.state; s < b.state + b.states; ++s)
+      f.state_change[s] = (f.state_force[s] + f.state_slope[s] * off - ws.state[s]) / f.state_share[s];
+  }
+}
+
+}  // namespace clutchwork::fixed

@@ -1,0 +1,67 @@
+#pragma once
+#include <clutchwork/workspace/arena.hpp>
+#include <clutchwork/workspace/settings.hpp>
+
+/// Fixed steps: their history, their matrices and their scratch. docs/theory/fixed-steps.md
+namespace clutchwork {
+
+template <class T>
+struct Fixed {
+  // the history, of which saved states have a copy
+  double time = -infinity;  ///< [s] end of the last step; where it is not the present time there is no history
+  double before = 0;        ///< [s] length of that step, 0: there was none
+  double origin = 0;        ///< [s] where the present grid of steps begins
+  std::int64_t count = 0;   ///< steps on it
+  T *gain = nullptr, *state_gain = nullptr, *given_gain = nullptr;  ///< change of speeds, states, prescribed speeds
+  T* given = nullptr;                                               ///< prescribed speeds now
+  T* kept = nullptr;    ///< of each direction: slope of its torque that is in the matrix [N m s/rad]
+  T* torque = nullptr;  ///< of each direction: mean over the last step
+  T* held = nullptr;    ///< of each contact: static torque in it, against slip backward, then forward
+
+  // made anew where it is not there
+  bool ready = false;        ///< the branches are packed
+  double length = 0;         ///< [s] of the steps whose matrices there are, 0: none
+  int* bends = nullptr;      ///< of each direction: its piece follows from where it is
+  int* two_sided = nullptr;  ///< of each contact: it resists both directions differently
+  T* factor = nullptr;       ///< Cholesky factor of the matrix of a step, by rows
+  T* answer = nullptr;       ///< change of the speeds by a unit impulse of each contact
+  T* mobility = nullptr;     ///< of the contacts, by rows: change of slips by unit impulses
+
+  // scratch of a step
+  T *ahead = nullptr, *state_ahead = nullptr, *given_ahead = nullptr;  ///< speeds and states predicted for its middle
+  T *change = nullptr, *state_change = nullptr, *given_change = nullptr;
+  T *force = nullptr, *slope = nullptr;              ///< of each direction: torque at rate zero; its slope by the rate
+  T* predicted = nullptr;                            ///< of each direction: rate in the middle
+  T *state_force = nullptr, *state_slope = nullptr;  ///< of each own state: change at the predicted rate; by the rate
+  T* state_share = nullptr;                          ///< of each own state: part of the step at which it is taken
+  T *start_rate = nullptr, *rate_change = nullptr;   ///< of each direction
+  T* mean = nullptr;                                 ///< of each direction: torque
+  T *impulse = nullptr, *gradient = nullptr, *lower = nullptr, *upper = nullptr, *weight = nullptr;
+  T *end_slip = nullptr, *solved = nullptr, *free_factor = nullptr;
+  T *kinetic = nullptr, *limit = nullptr;  ///< of each contact: what resists slip backward, then forward [N m]
+  T* share = nullptr;                      ///< of each contact: where in the step it breaks away
+  T* instant = nullptr;                    ///< [s] of each contact: when its mode changes
+  int *side = nullptr, *list = nullptr, *box = nullptr, *mode = nullptr;
+
+  template <class P, class A>
+  static void lay_out(P& p, A& a, const Sizes& n) {
+    const bool has = !has_tangents<T> && n.few;
+    const auto nv = has ? n.speeds : 0, ns = has ? n.states : 0, nd = has ? n.directions : 0;
+    const auto nc = has ? n.contacts : 0, np = has ? n.prescribed : 0;
+    a.take(p.gain, nv), a.take(p.state_gain, ns), a.take(p.given_gain, np), a.take(p.given, np);
+    a.take(p.kept, nd), a.take(p.torque, nd), a.take(p.held, 2 * nc);
+    a.take(p.bends, nd), a.take(p.two_sided, nc);
+    a.scratch(p.factor, nv * nv), a.scratch(p.answer, nc * nv), a.scratch(p.mobility, nc * nc);
+    a.scratch(p.ahead, nv), a.scratch(p.state_ahead, ns), a.scratch(p.change, nv), a.scratch(p.state_change, ns);
+    a.scratch(p.given_change, np), a.scratch(p.given_ahead, np), a.scratch(p.force, nd), a.scratch(p.slope, nd),
+        a.scratch(p.predicted, nd);
+    a.scratch(p.state_force, ns), a.scratch(p.state_slope, ns), a.scratch(p.state_share, ns);
+    a.scratch(p.start_rate, nd), a.scratch(p.rate_change, nd), a.scratch(p.mean, nd);
+    a.scratch(p.impulse, nc), a.scratch(p.gradient, nc), a.scratch(p.lower, nc), a.scratch(p.upper, nc);
+    a.scratch(p.weight, nc), a.scratch(p.end_slip, nc), a.scratch(p.solved, nc), a.scratch(p.free_factor, nc * nc);
+    a.scratch(p.kinetic, 2 * nc), a.scratch(p.limit, 2 * nc), a.scratch(p.share, nc), a.scratch(p.instant, nc);
+    a.take(p.side, nc), a.take(p.list, nc), a.take(p.box, nc), a.take(p.mode, nc);
+  }
+};
+
+}  // namespace clutchwork

@@ -1,0 +1,289 @@
+"""Steps of one length: their order, events, energy, bounded cost, saved states, and what they refuse.
+
+docs/theory/fixed-steps.md
+"""
+
+from __future__ import annotations
+
+import json
+from functools import cache
+from typing import Any
+
+import numpy as np
+import pytest
+
+import clutchwork as cw
+from clutchwork.declare.layout import DONE
+from clutchwork.declare.options import Options
+from clutchwork.declare.schema import REGISTRY, Role
+from clutchwork.run.begin import choose, new_run
+from support import cases, random_contacts, samples, six_speed
+from support.pages import page, table
+
+SPEEDS = ("w1", "w2", "w4", "w8")
+GUIDE = page("guide/fixed-steps.md")
+# the largest number of sets of free contacts that a step may try, of up to four rounds
+MOST_SETS, MOST_ROUNDS = 45, 4
+
+
+def fixed(step: float, **options: Any) -> dict[str, Any]:
+    return {"method": "fixed", "step": step, **options}
+
+
+def line(*, events: bool) -> cw.Driveline:
+    """Two discs on a spring, driven by a sine, and a third one that a clutch drags along, or locks to them."""
+    d = cw.Driveline("line")
+    a, b = d.shaft("a", inertia=0.3, speed=60.0), d.shaft("b", inertia=0.5, speed=20.0 if events else 50.0)
+    c = d.shaft("c", inertia=0.4, speed=0.0 if events else -300.0)
+    d.add(cw.SpringDamper("k", base=a, follower=b, stiffness=120.0, damping=0.4))
+    d.add(cw.Torque("drive", shaft=a, torque=cw.Sine(amplitude=90.0, frequency=1.3)))
+    d.add(cw.QuadraticTorque("drag", shaft=a, nominal_torque=-20.0, nominal_speed=60.0))
+    law = cw.Exponential(static=0.16, slow=0.14, fast=0.065, speed=30.0)
+    d.add(cw.Clutch("f", base=b, follower=c, friction=law, gain=1.0, normal_force=190.0))
+    return d
+
+
+@pytest.mark.parametrize(("events", "order", "off"), [(False, 2.0, 0.1), (True, 1.5, 0.6)])
+def test_order(events: bool, order: float, off: float) -> None:
+    """Two between events. An event costs one at worst, two where its instant is met as here."""
+    system = line(events=events).assemble()
+    times = [0.5, 0.65, 0.8, 1.0]
+
+    def speeds(**options: Any) -> np.ndarray:
+        run = cw.simulate(system, 1.0, times=times, **options)
+        assert bool(run.events.changes()) == events
+        return np.array([run[f"{name}.speed"] for name in "abc"])
+
+    exact = speeds(rtol=1e-12, atol=1e-12)
+    steps = [1.0 / n for n in (100, 141, 200, 283, 400, 566, 800)]
+    errors = [np.sqrt(np.mean((speeds(**fixed(step)) - exact) ** 2)) for step in steps]
+    slope = np.polyfit(np.log(steps), np.log(errors), 1)[0]
+    assert slope > order - off, errors
+    assert events or slope == pytest.approx(order, abs=off), errors
+
+
+@cache
+def shift(step: float) -> tuple[cw.Trajectory, cw.Trajectory]:
+    """The 3-4 shift with steps of one length, and exactly."""
+    system = six_speed.gearbox(six_speed.SHIFT).assemble()
+    times = np.linspace(0.0, 4.0, 2001)
+    return (
+        cw.simulate(system, 4.0, times=times, **fixed(step)),
+        cw.simulate(system, 4.0, times=times, rtol=1e-11, atol=1e-11),
+    )
+
+
+def test_the_shift_of_the_six_speed_gearbox() -> None:
+    run, exact = shift(1e-3)
+    # 1e-2 rad/s: asked for, of pressures with slopes; 9.3e-3 measured
+    assert max(np.abs(run[f"{name}.speed"] - exact[f"{name}.speed"]).max() for name in SPEEDS) < 1e-2
+    assert [(e.element, e.before, e.after, e.cause) for e in run.events] == [
+        (e.element, e.before, e.after, e.cause) for e in exact.events
+    ]
+    # hundredths of a step: 1e-7 s and 1.2e-5 s measured
+    for mine, theirs, most in zip(run.events, exact.events, (1e-5, 5e-5), strict=True):
+        assert mine.time == pytest.approx(theirs.time, abs=most)
+    # what a step is, not the grid of rows, decides
+    assert run.statistics["steps"] == 4000
+
+
+def test_the_launch_and_shift_of_an_independent_solver() -> None:
+    folder = cases.folder("six_speed")
+    case = json.loads((folder / "case.json").read_text())
+    times, reference = cases.table(folder / "reference.csv")
+    d = six_speed.gearbox(case["pressures_Pa"], case["initial_speeds_rad_s"])
+    run = d.simulate(case["t_end_s"], times=times, **fixed(1e-3))
+    for name in SPEEDS:
+        off = np.abs(run[f"{name}.speed"] - reference[name]).max()
+        # twice the bound of the shift alone, as the launch adds an engagement; 1.4e-2 measured
+        assert off < 2e-2, name
+
+
+def test_a_locked_contact_does_not_slip() -> None:
+    run, _ = shift(1e-3)
+    locked = run["F4.mode"] == 0
+    assert locked.any()
+    assert np.all(run["F4.slip"][locked] == 0.0)
+
+
+def test_each_step_closes_the_balance_of_energy() -> None:
+    system = six_speed.gearbox(six_speed.SHIFT).assemble()
+    run = cw.simulate(system, 4.0, output="steps", **fixed(1e-3))
+    assert run.energy.residual < 1e-13 * run.energy.turnover
+    kinetic = sum(0.5 * inertia * run[f"{name}.speed"] ** 2 for name, inertia in six_speed.INERTIA.items())
+    works = sum(run[f"{name}.work"] for name in ("engine", "load", "shaft", "F1", "F2", "F4"))
+    # of each step, against round-off of sums of up to 1e6 J
+    assert np.abs(np.diff(kinetic - works)).max() < 1e-8
+
+
+def test_a_spring_keeps_its_energy_for_a_million_steps() -> None:
+    d = cw.Driveline("swing")
+    a, b = d.shaft("a", inertia=1.0, speed=1.0), d.shaft("b", inertia=2.0)
+    d.add(cw.Spring("k", base=a, follower=b, stiffness=400.0))
+    run = d.simulate(1000.0, times=np.linspace(999.0, 1000.0, 1001), **fixed(1e-3))
+    assert run.statistics["steps"] == 1_000_000
+    energy = 0.5 * run["a.speed"] ** 2 + run["b.speed"] ** 2 + 0.5 * run["k.torque"] ** 2 / 400.0
+    # rows have the torque in the middle of a step, half a step before its speeds: w h / 2 of 1 % of the energy
+    assert np.abs(energy / 0.5 - 1.0).max() < 2e-2
+    assert run.energy.residual < 1e-9
+
+
+def test_the_iterations_of_each_step_are_bounded() -> None:
+    """Random drivelines with two to six contacts, some of which depend on each other."""
+    most = 0
+    for seed in range(40):
+        system = random_contacts.driveline(seed).assemble()
+        run = new_run(system.to_bytes())
+        choose(run, Options(method="fixed", step=1e-3))
+        before = run.statistics()["evaluations"]
+        for number in range(1, 400):
+            status, _, _ = run.advance(number * 1e-3, np.empty(0), np.empty((0, run.row_size)), 0, 0)
+            if status != DONE:
+                break
+            run.events()
+            after = run.statistics()["evaluations"]
+            # the first row is that of an event
+            most = max(most, after - before) if number > 1 else most
+            before = after
+    assert 1 < most <= MOST_SETS * MOST_ROUNDS
+    # 3 to 6 contacts take less than a dozen
+    assert most <= 12
+
+
+def test_parallel_clutches_share_as_their_capacity() -> None:
+    d = cw.Driveline("parallel")
+    a, b = d.shaft("a", inertia=1.0, speed=0.0), d.shaft("b", inertia=1.0, speed=0.0)
+    d.add(cw.Torque("t", shaft=a, torque=10.0))
+    for name, force in (("one", 100.0), ("two", 300.0)):
+        law = cw.Coulomb(static=0.2, kinetic=0.1)
+        d.add(cw.Clutch(name, base=a, follower=b, friction=law, gain=1.0, normal_force=force))
+    run = d.simulate(0.1, **fixed(1e-2))
+    # half of the torque drives the second shaft; the share is round-off, 1e-16, over the weight of 1e-10
+    assert run["one.torque"][-1] == pytest.approx(1.25, rel=1e-5)
+    assert run["two.torque"][-1] == pytest.approx(3.75, rel=1e-5)
+
+
+def test_freewheels_and_sprags_beside_clutches() -> None:
+    """Random drivelines with up to six contacts; sprags give way for good, as in the exact motion."""
+    far = []
+    for seed in range(40):
+        system = random_contacts.driveline(seed).assemble()
+        run = cw.simulate(system, 0.5, times=[0.1, 0.3, 0.5], **fixed(1e-4))
+        exact = cw.simulate(system, 0.5, times=[0.1, 0.3, 0.5])
+        assert run.finished, f"seed {seed}: {run.message}"
+        speeds = [f"{node.name}.speed" for node in run.wiring.nodes]
+        largest = max(np.abs(exact[name]).max() for name in speeds)
+        far.append(max(np.abs(run[name] - exact[name]).max() for name in speeds) / (1.0 + largest))
+    # of the largest speed: events cost an order, and steps of locking follow each other
+    assert np.median(far) < 1e-3
+    assert np.max(far) < 5e-2
+
+
+def test_static_friction_does_not_chatter() -> None:
+    """A block on a belt: it sticks and slips, with the same number of events as the exact motion."""
+    d = cw.Driveline("stick-slip")
+    belt, block = d.shaft("belt", speed=1.0), d.shaft("block", inertia=1.0)
+    d.add(cw.PrescribedSpeed("drive", shaft=belt, speed=1.0))
+    d.add(cw.SpringDamper("k", base=d.housing, follower=block, stiffness=100.0, damping=0.1))
+    law = cw.Stribeck(static=0.3, kinetic=0.15, speed=0.1)
+    d.add(cw.Clutch("f", base=belt, follower=block, friction=law, gain=1.0, normal_force=100.0))
+    exact, run = d.simulate(5.0), d.simulate(5.0, **fixed(1e-3))
+    assert [e.cause for e in run.events] == [e.cause for e in exact.events]
+    # ten cycles, each with an event of some microseconds
+    assert np.allclose([e.time for e in run.events], [e.time for e in exact.events], atol=2e-3)
+
+
+def test_states_go_on_with_the_same_bits() -> None:
+    system = six_speed.gearbox(six_speed.SHIFT).assemble()
+    times = [2.5, 2.501, 3.0, 4.0]
+    whole = cw.simulate(system, 4.0, times=times, **fixed(1e-3))
+    state = cw.simulate(system, 4.0, **fixed(1e-3)).state(2.5)
+    rest = cw.simulate(system, 4.0, times=times, start=state, **fixed(1e-3))
+    assert rest.rows.tobytes() == whole.rows.tobytes()
+    # another method goes on from there, too
+    other = cw.simulate(system, 4.0, times=times, start=state)
+    assert np.abs(other["w8.speed"] - whole["w8.speed"]).max() < 1e-2
+
+
+def test_steps_by_hand_are_those_of_the_run() -> None:
+    system = six_speed.gearbox(six_speed.SHIFT).assemble()
+    whole = cw.simulate(system, 2.4, times=[2.4], **fixed(1e-3))
+    sim = cw.Simulator(system, **fixed(1e-3))
+    for _ in range(240):
+        sim.advance(0.01)
+    assert sim["w8.speed"] == pytest.approx(whole["w8.speed"][-1], rel=1e-12)
+
+
+def test_an_end_between_two_steps_is_reached_by_a_shorter_one() -> None:
+    run = line(events=False).simulate(0.0125, output="steps", **fixed(5e-3))
+    assert run.time.tolist() == [0.0, 0.005, 0.01, 0.0125]
+
+
+def test_a_sweep_has_the_runs() -> None:
+    d = line(events=True)
+    found = cw.sweep(d, 1.0, vary={"a.inertia": [0.2, 0.3]}, outputs=["a.speed"], **fixed(1e-3))
+    assert found["a.speed"][1] == d.simulate(1.0, times=[1.0], **fixed(1e-3))["a.speed"][-1]
+
+
+def refused_kinds() -> dict[str, str]:
+    """Kinds of elements and laws that the guide names, with the reason."""
+    return {kind: why for kinds, why in table(GUIDE, "refused") for kind in kinds.replace("`", "").split(", ")}
+
+
+@pytest.mark.parametrize("kind", sorted(REGISTRY[Role.LAW]))
+def test_laws_are_taken_or_refused_as_the_guide_says(kind: str) -> None:
+    d = cw.Driveline(kind)
+    a, b = d.shaft("a", inertia=1.0, speed=5.0), d.shaft("b", inertia=1.0)
+    law = samples.law(REGISTRY[Role.LAW][kind])
+    d.add(cw.Clutch("c", base=a, follower=b, friction=law, gain=1.0, normal_force=10.0))
+    taken_or_refused(d, kind)
+
+
+@pytest.mark.parametrize("cls", samples.declared(*samples.ELEMENT_ROLES), ids=lambda cls: cls.kind)
+def test_elements_are_taken_or_refused_as_the_guide_says(cls: Any) -> None:
+    taken_or_refused(samples.driveline(cls), cls.kind)
+
+
+def taken_or_refused(d: cw.Driveline, kind: str) -> None:
+    known = refused_kinds()
+    if kind not in known:
+        run = d.simulate(0.02, **fixed(1e-3))
+        assert run.finished, run.message
+        return
+    with pytest.raises(cw.OptionError) as error:
+        d.simulate(0.02, **fixed(1e-3))
+    assert 'method is "fixed"' in str(error.value)
+    assert known[kind] in str(error.value)
+
+
+def test_what_refuses_says_so_before_it_runs() -> None:
+    d, law = cw.Driveline("jumps"), samples.law(REGISTRY[Role.LAW]["naive_sign"])
+    a, b = d.shaft("a", inertia=1.0, speed=5.0), d.shaft("b", inertia=1.0)
+    d.add(cw.Clutch("c", base=a, follower=b, friction=law, gain=1.0, normal_force=10.0))
+    for call in (
+        lambda: cw.Simulator(d, method="fixed"),
+        lambda: cw.sweep(d, 1.0, vary={"a.inertia": [1.0]}, outputs=["a.speed"], method="fixed"),
+        lambda: cw.simulate(d, 1.0, method="fixed"),
+    ):
+        with pytest.raises(cw.OptionError, match="'c', for its law jumps"):
+            call()
+
+
+def test_shafts_without_inertia_and_many_shafts_are_refused() -> None:
+    d = cw.Driveline("light")
+    a, b, c = d.shaft("a", inertia=1.0), d.shaft("b"), d.shaft("c", inertia=1.0)
+    for name, base, follower in (("one", a, b), ("two", b, c)):
+        d.add(cw.SpringDamper(name, base=base, follower=follower, stiffness=10.0, damping=1.0))
+    with pytest.raises(cw.OptionError, match="no inertia"):
+        d.simulate(1.0, method="fixed")
+    d = cw.Driveline("many")
+    shafts = [d.shaft(f"s{i}", inertia=1.0) for i in range(14)]
+    for i in range(13):
+        d.add(cw.Spring(f"k{i}", base=shafts[i], follower=shafts[i + 1], stiffness=10.0))
+    with pytest.raises(cw.OptionError, match="more than 12 independent speeds"):
+        d.simulate(1.0, method="fixed")
+
+
+def test_derivatives_are_refused() -> None:
+    with pytest.raises(cw.UseError, match='method is "fixed"'):
+        cw.differentiable(line(events=True), 1.0, of=["a.speed"], by=["a.inertia"], method="fixed")
