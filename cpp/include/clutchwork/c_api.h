@@ -27,8 +27,9 @@ int64_t cw_size(const void* system, int64_t bytes);
 cw_run* cw_load(const void* system, int64_t bytes, void* memory, int64_t memory_bytes);
 
 /* Settings by name: rtol, atol, method (0 auto, 1 rodas5p, 2 dopri5, 3 fixed), step [s] of
-   method fixed, first_step [s] (0: chosen by the solver), max_step [s] (INFINITY: no limit), max_steps, max_events, angles, work (0 or 1), t_start [s] before the first step.
-   Ranges are those of the options of a run. 1: set; 0: unknown, out of range or not a number. */
+   method fixed, first_step [s] (0: chosen by the solver), max_step [s] (INFINITY: no limit), max_steps, max_events,
+   angles, work (0 or 1), t_start [s] before the first step. Ranges are those of the options of a run. 1: set; 0:
+   unknown, out of range or not a number. */
 int cw_set_option(cw_run* run, const char* name, double value);
 
 /* Value of a signal, which it holds from the present time on in place of what the system has for it. 1: set; 0: no such
