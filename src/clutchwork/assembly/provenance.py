@@ -8,7 +8,7 @@ decisions/0043
 from __future__ import annotations
 
 import warnings
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from functools import cached_property, partial
 from itertools import chain, islice
 from numbers import Real
@@ -40,7 +40,7 @@ Look: TypeAlias = "tuple[Any, SystemData, Reach]"
 # by so much of their scale numbers are moved; those at a bound go to one side alone
 PROBES = (1e-3, -1.7e-3, 2.3e-3, -2.9e-3)
 # and by so much where it is asked whether what follows is a straight line
-FAR = (-1.0, -0.5, 0.5, 1.0)
+FAR = (0.5, 1.0, -0.5, -1.0)
 # values of signals, of which some fit any
 LEVELS = (1.0, 0.5, 300.0, 0.0, -1.0)
 # arrays that hold signals alone
@@ -140,20 +140,6 @@ class SystemParameter:
         value, (low, high) = float(self.value), self.bounds
         return [x for share in FAR if low < (x := value + share * (abs(value) or 1.0)) < high]
 
-    def adds_to(self, other: SystemParameter) -> bool:
-        """Whether the words of both, where they change together, are the sums of what each changes alone."""
-        system = self._system
-        pairs = ((x, y) for x in self.far for y in other.far)
-        made = (
-            [_with(system, changes) for changes in ({self.name: x}, {other.name: y}, {self.name: x, other.name: y})]
-            for x, y in pairs
-        )
-        found = next((one for one in made if all(one)), None)
-        if found is None or any(differing(system, one) is None for one in found if one is not None):
-            return False
-        first, second, both = (_words(one) - _words(system) for one in found if one is not None)
-        return bool(np.allclose(both, first + second, rtol=1e-9, atol=1e-12 * max(np.max(np.abs(both)), 1e-300)))
-
     @property
     def when(self) -> str:
         """When it may change: "during a run" or "before a run"."""
@@ -163,6 +149,32 @@ class SystemParameter:
         """Whether with another value its words are that, and nothing else changes."""
         made = _changed(self._system, self.name, value)
         return made is not None and _is_value(made, differing(self._system, made), self.reach, value)
+
+
+class Together:
+    """Whether numbers of a System act on its words apart from each other, where several change at once."""
+
+    def __init__(self, system: SystemData, numbers: Mapping[str, SystemParameter]) -> None:
+        self._system, self._base = system, _words(system)
+        moved = {name: _moved(system, name, found.far) for name, found in numbers.items()}
+        self._values = {name: one[0] for name, one in moved.items() if one is not None}
+        self._changes = {name: one[1] - self._base for name, one in moved.items() if one is not None}
+
+    def add_up(self, names: Sequence[str]) -> bool:
+        """Whether the words with other values of all of them are the sums of what each changes alone."""
+        if any(name not in self._values for name in names):
+            return False
+        made = _with(self._system, {name: self._values[name] for name in names})
+        if made is None or differing(self._system, made) is None:
+            return False
+        change, found = sum(self._changes[name] for name in names), _words(made) - self._base
+        return bool(np.allclose(found, change, rtol=1e-9, atol=1e-12 * max(float(np.max(np.abs(found))), 1e-300)))
+
+
+def _moved(system: SystemData, name: str, values: Sequence[float]) -> tuple[float, NDArray[np.float64]] | None:
+    """Another value that is taken, and the words with it."""
+    made = ((value, _changed(system, name, value)) for value in values)
+    return next(((value, _words(one)) for value, one in made if one is not None), None)
 
 
 class SystemParameters(Mapping[str, SystemParameter]):

@@ -13,6 +13,7 @@ from clutchwork.base.classes import dataclass
 from clutchwork.base.errors import ModelError, ModelWarning, Problem, UseError
 from clutchwork.declare.layout import ROW
 from clutchwork.declare.options import Options
+from clutchwork.fmu.following import following
 from clutchwork.fmu.names import input_faults, is_text, matching, output_faults, parameter_faults, shown
 from clutchwork.fmu.parameters import parameters
 from clutchwork.fmu.variables import FmuVariable, LeftOut, VariableKind
@@ -32,6 +33,7 @@ OF_STATES = (
     "supply_energy",
     "meter_energy",
 )
+FOLLOWS = "the output {} is computed from it too: choose outputs without that one"
 MODE = "mode of the contact: -1 slips backward, 0 locked, 1 slips forward, 2 open"
 
 
@@ -75,6 +77,16 @@ def interface(
     results = [name for name, one in known.items() if not is_text(one)]
     wanted = [name for name in results if name not in taken] if outputs is None else matching(outputs, results)
     kept = list(numbers) if chosen is None else matching(chosen, numbers)
+    asked_for = [numbers[name] for name in kept if name in numbers]
+    moved = following(ready, options, asked_for, [name for name in wanted if name in results])
+    if chosen is not None and outputs is None:
+        # parameters that were asked for come before outputs that were not
+        while moved:
+            wanted = [name for name in wanted if name not in moved.values()]
+            moved = following(ready, options, asked_for, wanted)
+    left += tuple(LeftOut(name, FOLLOWS.format(output)) for name, output in moved.items())
+    numbers = {name: one for name, one in numbers.items() if name not in moved}
+    kept = kept if chosen is not None else [name for name in kept if name in numbers]
     faults = [
         *input_faults(asked, settable, known, numbers),
         *output_faults(wanted, known, taken),

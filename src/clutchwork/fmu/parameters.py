@@ -2,16 +2,17 @@
 
 from __future__ import annotations
 
-from collections import defaultdict
 from collections.abc import Collection, Iterator, Mapping
 from itertools import combinations
 from math import isnan, nan
 from numbers import Real
 
-from clutchwork.assembly.provenance import SystemParameter
+from clutchwork.assembly.provenance import SystemParameter, Together
 from clutchwork.assembly.system import System
 from clutchwork.fmu.variables import FmuVariable, LeftOut, Place, VariableKind
 
+# arrays that no output is computed from
+OF_STARTS = {"initial_speed", "initial_angle", "initial_state", "contact_tolerance"}
 BENDS = "it is fixed when the FMU is made: export one for each value"
 WHOLE = "it is a whole number, which is fixed when the FMU is made"
 NOTHING = "it acts on nothing in this driveline"
@@ -26,7 +27,7 @@ def parameters(system: System, taken: Collection[str]) -> Iterator[FmuVariable |
     known = {name: found for name in system.parameters if _is_number(found := system.parameters[name])}
     reasons = {name: why for name, found in known.items() if (why := _reason(found))}
     free = {name: found for name, found in known.items() if name not in reasons}
-    reasons |= _acting_together(free)
+    reasons |= _acting_together(system, free)
     shared = _shared_words([found for name, found in free.items() if name not in reasons])
     for name, found in known.items():
         called = f"{name}_start" if name in taken else name
@@ -50,16 +51,14 @@ def _reason(found: SystemParameter) -> str:
     return "" if found.slopes is not None else BENDS
 
 
-def _acting_together(free: Mapping[str, SystemParameter]) -> dict[str, str]:
-    """Numbers that reach the same words as others, where both together are not the sum of each alone."""
-    owners = defaultdict[int, list[str]](list)
-    for name, found in free.items():
-        for word in found.words.tolist():
-            owners[word].append(name)
-    pairs = dict.fromkeys(pair for names in owners.values() for pair in combinations(names, 2))
+def _acting_together(system: System, free: Mapping[str, SystemParameter]) -> dict[str, str]:
+    """Numbers that do not add up with others that come before them, such as a stiffness and a twist at the start."""
+    together = Together(system, free)
+    if together.add_up(list(free)):
+        return {}
     reasons = dict[str, str]()
-    for one, other in pairs:
-        if one not in reasons and other not in reasons and not free[one].adds_to(free[other]):
+    for one, other in combinations(free, 2):
+        if one not in reasons and other not in reasons and not together.add_up([one, other]):
             reasons[other] = f"it acts together with {one}: export an FMU for each value"
     return reasons
 
@@ -83,7 +82,9 @@ def _parameter(system: System, called: str, found: SystemParameter, shared: set[
     kind = VariableKind.TUNABLE if tunable else VariableKind.FIXED
     pool = _pool(system, found) if tunable else ()
     value = float(found.value)
-    return FmuVariable(called, kind, found.unit, value, found.bounds, found.about, words=words, params=pool)
+    moves = not found.reach.keys() <= OF_STARTS
+    about, path, far = found.about, found.name, tuple(found.far)
+    return FmuVariable(called, kind, found.unit, value, found.bounds, about, path, far, moves, words=words, params=pool)
 
 
 def _pool(system: System, parameter: SystemParameter) -> tuple[Place, ...]:

@@ -40,6 +40,9 @@ class FmuVariable:
     start: float = 0.0
     bounds: tuple[float, float] = (-inf, inf)
     about: str = ""
+    path: str = ""  # of a parameter in the driveline
+    far: tuple[float, ...] = ()  # other values that a parameter may have
+    reaches_forms: bool = False  # whether outputs may be computed from it
     of: int = -1  # value reference of the input that a slope belongs to
     inputs: tuple[int, ...] = ()  # numbers in the core
     words: tuple[Place, ...] = ()  # of the bytes of the System
