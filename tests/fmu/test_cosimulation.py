@@ -230,3 +230,22 @@ def test_a_budget_that_is_too_small_ends_the_step(made: Any) -> None:
 def test_an_fmu_without_outputs_is_valid(tmp_path: Any) -> None:
     path = cw.Driveline.load(SIX_SPEED).to_fmu(tmp_path / "none.fmu", outputs=[], picture=False)
     assert validate_fmu(str(path)) == []
+
+
+@pytest.mark.parametrize("version", ["2.0", "3.0"])
+def test_steps_of_one_length_are_those_of_a_simulator(tmp_path: Any, version: str) -> None:
+    driveline = cw.Driveline.load(SIX_SPEED)
+    how = {"method": "fixed", "step": 1e-3}
+    path = driveline.to_fmu(tmp_path / "fixed.fmu", inputs=INPUTS, version=version, picture=False, **how)
+    assert validate_fmu(str(path)) == []
+    fmu = Fmu(path, tmp_path / "unpacked")
+    sim = cw.Simulator(driveline.assemble().changed(dict.fromkeys(INPUTS, 0.0)), **how)
+    with fmu.running(dict.fromkeys(INPUTS, 0.0)) as run:
+        for k in range(200):
+            values = {"F1.pressure": 2e3 * k, "F2.pressure": max(0.0, 4e5 - 2e3 * k)}
+            sim.set(values)
+            for name, one in values.items():
+                run.set(name, one)
+            sim.advance_to((k + 1) * 1e-3)
+            run.step(k * 1e-3, (k + 1) * 1e-3 - k * 1e-3)
+        assert run.get(SPEEDS) == [sim[name] for name in SPEEDS]

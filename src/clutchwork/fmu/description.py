@@ -166,6 +166,8 @@ def _add_three(root: Element, made: Interface, identifier: str) -> None:
         canSerializeFMUState="true",
         hasEventMode="true",
     )
+    if made.options.method == "fixed" and made.options.step:
+        root[0].set("fixedInternalStepSize", repr(float(made.options.step)))
     add_units(root, _units(made))
     _categories(root)
     _experiment(root, made)
