@@ -50,7 +50,12 @@ def test_bash_completes_commands_options_files_and_names(script: Path, tmp_path:
     assert {"--set", "--signals", "--max-step"} <= completed(script, "clutchwork run --", tmp_path)
     assert "model.toml" in completed(script, "clutchwork run mod", tmp_path)
     assert completed(script, "clutchwork new --kind ''", tmp_path) == set(KINDS)
-    assert completed(script, "clutchwork run model.toml --method ''", tmp_path) == {"auto", "rodas5p", "dopri5"}
+    assert completed(script, "clutchwork run model.toml --method ''", tmp_path) == {
+        "auto",
+        "rodas5p",
+        "dopri5",
+        "fixed",
+    }
     offered = completed(script, "clutchwork elements disk_", tmp_path)
     assert offered == {kind for kind in kinds("elements") if kind.startswith("disk_")}
 

@@ -144,8 +144,9 @@ def test_rights_links_and_devices_stay(tmp_path: Path) -> None:
 
 # what writes a file in Python
 OPENS = re.compile(r"\.write_(text|bytes|html|image)\(|open\([^)]*[\"'][wxa]|\.(savefig|savez|savetxt|savemat)\(")
-# the helper, a lock, and what gets a file to write from `exchange.write` or writes into memory
-ALLOWED = r"^(base/writing|studies/lock|plot/canvas|schematic/picture|exchange/(csv_table|mat|mdf))\.py$"
+# the helper, a lock, unpacked FMUs in a folder of their own and the pipe to one, and what gets a file to write from
+# `exchange.write` or writes into memory
+ALLOWED = r"^(base/writing|studies/lock|plot/canvas|schematic/picture|exchange/(csv_table|mat|mdf)|fmu_import/\w+)\.py$"
 # of `replaced`; and a picture writes itself by it
 ITS_PATH = r"\bnew\b|\bfigure\.savefig\("
 

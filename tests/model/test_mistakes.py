@@ -159,7 +159,7 @@ CASES = {
     "unknown method": (
         'name = "two discs"',
         'name = "x"\nsimulation = {method = "rodas"}',
-        "method = 'rodas': must be one of auto, rodas5p, dopri5; did you mean 'rodas5p'?",
+        "method = 'rodas': must be one of auto, rodas5p, dopri5, fixed; did you mean 'rodas5p'?",
     ),
     "format of the future": (
         'name = "two discs"',

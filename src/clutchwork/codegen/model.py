@@ -157,7 +157,7 @@ def _enumerations(model: Exported) -> Iterator[str]:
     yield from ("", "/* What cw_advance returns. */")
     statuses = [(f"MODEL_STATUS_{name.upper()}", k, message) for k, (name, message, _) in enumerate(STATUS)]
     refused = (
-        "MODEL_STATUS_REFUSED",
+        "MODEL_STATUS_INVALID_CALL",
         -1,
         "the end time is before the present one or not a number, or there is no room",
     )
