@@ -104,8 +104,8 @@ inline bool plain_inputs(const System& s, std::int64_t first, int n) {
 
 /// Whether a flow lies inside the pools, between two shared states.
 inline bool flow_fits(const System& s, std::int64_t i) {
-  bool good = has_flow(s.flow_kind[i]) && s.flow_from[i] >= -1 && s.flow_from[i] < s.shared &&
-              s.flow_to[i] >= -1 && s.flow_to[i] < s.shared && s.flow_param[i] >= 0 && s.flow_input[i] >= 0;
+  bool good = has_flow(s.flow_kind[i]) && s.flow_from[i] >= -1 && s.flow_from[i] < s.shared && s.flow_to[i] >= -1 &&
+              s.flow_to[i] < s.shared && s.flow_param[i] >= 0 && s.flow_input[i] >= 0;
   if (!good) return false;
   visit_flow(s.flow_kind[i], [&](auto tag) {
     using E = typename decltype(tag)::type;
@@ -117,7 +117,8 @@ inline bool flow_fits(const System& s, std::int64_t i) {
 
 /// Whether a process lies inside the pools, its states among the shared ones.
 inline bool process_fits(const System& s, std::int64_t i) {
-  bool good = has_process(s.process_kind[i]) && s.process_state[i] >= s.states - s.shared && s.process_param[i] >= 0 && s.process_input[i] >= 0;
+  bool good = has_process(s.process_kind[i]) && s.process_state[i] >= s.states - s.shared && s.process_param[i] >= 0 &&
+              s.process_input[i] >= 0;
   if (!good) return false;
   visit_process(s.process_kind[i], [&](auto tag) {
     using E = typename decltype(tag)::type;
@@ -307,8 +308,8 @@ inline bool matrices_fit(const System& s) {
 
 /// Offsets and numbers inside the system that the core follows without looking.
 inline bool in_range(const System& s) {
-  bool good = is_compiled(s) && offsets_in_range(s) && ways_fit(s) && loads_fit(s) && transmissions_fit(s) && shared_in_range(s) &&
-              meters_in_range(s) && matrices_fit(s);
+  bool good = is_compiled(s) && offsets_in_range(s) && ways_fit(s) && loads_fit(s) && transmissions_fit(s) &&
+              shared_in_range(s) && meters_in_range(s) && matrices_fit(s);
   std::int64_t all = 0, own = 0, segments = 0;
   for (std::int64_t i = 0; good && i < s.inputs; ++i) good = signal_fits(s, i, segments);
   for (std::int64_t i = 0; good && i < s.elements; ++i, all += own) good = element_fits(s, i, own);

@@ -438,6 +438,20 @@ std::vector<unsigned char> Instance::serialized(const State& state) {
   return made;
 }
 
+/// Whether every number of a state, but for those of its run, is one that an instance may have.
+bool Instance::is_possible(const State& state) const {
+  bool fits = std::isfinite(state.t_start) && state.rtol >= 0 && state.rtol < 1;
+  fits = fits && (state.is_loaded || int(state.stage) < int(Stage::step));
+  for (double slope : state.slopes) fits = fits && std::isfinite(slope);
+  for (std::size_t k = 0; k < model_.variables.size(); ++k) {
+    const Variable& one = model_.variables[k];
+    fits = fits && (state.on_line[k] == 0 || (state.on_line[k] == 1 && one.kind == Kind::input));
+    for (double x : {state.loaded[k], state.value[k]})
+      fits = fits && (!is_given(one) || one.kind == Kind::slope || (x >= one.least && x <= one.most));
+  }
+  return fits;
+}
+
 State* Instance::deserialized(const unsigned char* bytes, std::int64_t n) {
   const char* damaged = "the serialised state is damaged, or that of another model";
   std::uint64_t words[state_words];
@@ -459,16 +473,7 @@ State* Instance::deserialized(const unsigned char* bytes, std::int64_t n) {
     std::memcpy(part->data(), from, 8 * part->size());
     from += 8 * part->size();
   }
-  bool fits = std::isfinite(made->t_start) && made->rtol >= 0 && made->rtol < 1;
-  fits = fits && (made->is_loaded || int(made->stage) < int(Stage::step));
-  for (double slope : made->slopes) fits = fits && std::isfinite(slope);
-  for (std::size_t k = 0; k < model_.variables.size(); ++k) {
-    const Variable& one = model_.variables[k];
-    fits = fits && (made->on_line[k] == 0 || (made->on_line[k] == 1 && one.kind == Kind::input));
-    for (double x : {made->loaded[k], made->value[k]})
-      fits = fits && (!is_given(one) || one.kind == Kind::slope || (x >= one.least && x <= one.most));
-  }
-  if (!fits) return refuse(damaged), nullptr;
+  if (!is_possible(*made)) return refuse(damaged), nullptr;
   if (!made->is_loaded) return made.release();
   // read by a run of its own, of which it becomes a copy
   const State here = *std::unique_ptr<State>(state());

@@ -87,6 +87,7 @@ class Instance {
   cw_run* run() const { return run_; }
   bool is_begun() const { return now_.stage != Stage::instantiated && now_.stage != Stage::initialization; }
   std::string told(int status) const;
+  bool is_possible(const State& state) const;
   bool load();
   bool put(const std::vector<double>& values);
   bool is_line(std::size_t input) const;

@@ -83,8 +83,8 @@ void lay_out(W& ws, A& a) {
   a.take(ws.branch, n.directions), a.take(ws.branch_of, n.directions);
   auto each = [&](auto&... part) { (std::remove_reference_t<decltype(part)>::lay_out(part, a, n), ...); };
   each(ws.in, ws.contact, ws.event_context, ws.held, ws.loads, ws.coupled, ws.set, ws.problem, ws.decision, ws.geometry,
-       ws.reduced, ws.rows, ws.jacobian, ws.shared, ws.stages, ws.full, ws.ratios, ws.fixed, ws.step_start, ws.step_end, ws.guard,
-       ws.observed, ws.out, ws.events, ws.moved);
+       ws.reduced, ws.rows, ws.jacobian, ws.shared, ws.stages, ws.full, ws.ratios, ws.fixed, ws.step_start, ws.step_end,
+       ws.guard, ws.observed, ws.out, ws.events, ws.moved);
 }
 
 /// Lay the arrays of a workspace into memory; returns the size needed.

@@ -141,8 +141,9 @@ bool enter_mode(Workspace<T>& ws, bool again = false) {
   if (!again) turn_jumped(ws), settle_locked(ws);
   if (ws.held.too_many || !count_reduced(ws)) return false;
   ws.reduced.method = choose_method(ws);
-  ws.reduced.is_sparse = !has_small_forms || has_tangents<T> || sys.full[0] != 0 || sys.states > most_small_states(ws.reduced.method) ||
-                         sys.shared > 0 || ws.reduced.nz < 1 || ws.reduced.nz > small_speeds || has_massless(ws);
+  ws.reduced.is_sparse = !has_small_forms || has_tangents<T> || sys.full[0] != 0 ||
+                         sys.states > most_small_states(ws.reduced.method) || sys.shared > 0 || ws.reduced.nz < 1 ||
+                         ws.reduced.nz > small_speeds || has_massless(ws);
   if (!factor_mobility(ws) || !reduce_motion(ws)) return false;
   list_lines(ws);
   ++ws.statistics.phases;

@@ -14,10 +14,11 @@ struct MethodList {
   static constexpr int count = sizeof...(Integrators);
 };
 
-/// Every Method but `auto` and `fixed`, which has no phases: a new integrator is its header, a line here and its name in
-/// declare/layout.py.
+/// Every Method but `auto` and `fixed`, which has no phases: a new integrator is its header, a line here and its name
+/// in declare/layout.py.
 using Methods = MethodList<Rodas5P, Dopri5>;
-static_assert(Methods::count + 1 == last_method && int(Method::fixed) == last_method, "run/methods.hpp: as many integrators as Method names");
+static_assert(Methods::count + 1 == last_method && int(Method::fixed) == last_method,
+              "run/methods.hpp: as many integrators as Method names");
 
 /// Call f with the tag of the integrator behind a method; nothing for `auto`.
 template <class F>

@@ -204,6 +204,21 @@ bool is_struck_off(const Workspace<T>& ws, int c, T slip_before) {
   return abs(value(slip)) > tolerance && abs(value(slip - slip_before)) > tolerance;
 }
 
+/// Modes, where gears whose friction nothing balances stop at once.
+template <class T>
+Status settle_jams(Workspace<T>& ws, int located, bool at_start) {
+  Status status = ws.loads.jammed < 0 ? settle(ws, located) : Status::unbalanced;
+  for (int round = 0; status == Status::unbalanced && round < ws.sys.loads; ++round) {
+    const int c = ws.loads.jammed >= 0 ? ws.loads.jammed : ws.detail.component - int(ws.sys.elements);
+    ws.loads.jammed = -1;
+    if (c < 0 || !stop_jammed(ws, c)) return status;
+    ws.event_context.cause = Cause::jam, ws.event_context.contact = c;
+    ws.contact.impulse[c] = at_start;
+    status = settle(ws, -1);
+  }
+  return status;
+}
+
 /// Impulses, then modes; the impulse of a stop within a tolerance may bring others to rest, or break them loose.
 /// `running`: all is decided. docs/theory/contacts.md, rule 9
 template <class T>
@@ -217,15 +232,7 @@ Status decide(Workspace<T>& ws, bool at_start) {
   for (int c = 0; c < ws.sys.contacts; ++c) {
     ws.contact.impulse[c] = at_start && ws.contact.mode[c] == locked && ws.event_context.mode[c] != locked;
   }
-  Status status = ws.loads.jammed < 0 ? settle(ws, located) : Status::unbalanced;
-  for (int round = 0; status == Status::unbalanced && round < ws.sys.loads; ++round) {
-    const int c = ws.loads.jammed >= 0 ? ws.loads.jammed : ws.detail.component - int(ws.sys.elements);
-    ws.loads.jammed = -1;
-    if (c < 0 || !stop_jammed(ws, c)) return status;
-    ws.event_context.cause = Cause::jam, ws.event_context.contact = c;
-    ws.contact.impulse[c] = at_start;
-    status = settle(ws, -1);
-  }
+  Status status = settle_jams(ws, located, at_start);
   const bool much = status == Status::running && stops_much(ws, located, kinetic_energy(ws));
   if (status == Status::running && (much || stops_short(ws, located))) {
     if (!stop_within_tolerance(ws, located, much ? 0.0 : slip_tolerance(ws)) || (stops && !collide(ws)))

@@ -63,7 +63,8 @@ struct Geometry {
   }
 };
 
-/// Forms of the motion that are compiled, as bits: 1 the small ones, 2 sparse, 4 full. A program of one model needs few.
+/// Forms of the motion that are compiled, as bits: 1 the small ones, 2 sparse, 4 full. A program of one model needs
+/// few.
 #ifndef CLUTCHWORK_FORMS
 #define CLUTCHWORK_FORMS 7
 #endif
