@@ -27,6 +27,7 @@ CONTACTS = {
     r"0 \le \alpha \le 2": "ample = 2",
     "at most $20 n + 50$": "raise(*this, 50 + 20 * set.n)",
     "A price below $10^{-9}$ of the largest": "> 1e-9 * most",
+    "more than $10^{-10}$ of the kinetic energy": "constexpr double least = 1e-10;",
     "in at most 60 steps": "round < 60 && miss",
     r"|\sigma_c| \le 10^{-10} \left( 1 + \max |v| \right)": "return 1e-10 * (1 + largest)",
 }

@@ -367,7 +367,7 @@ def _before_a_light_shaft(rng: Rng) -> tuple[cw.Driveline, float]:
 def test_a_ratio_that_vanishes_before_a_shaft_without_inertia_jams(seed):
     """Nothing determines the speed of that shaft: the run ends there, from the start or on the way, and says so."""
     d, at = _before_a_light_shaft(np.random.default_rng([seed, 17]))
-    with pytest.warns(cw.StoppedEarly, match="the shaft without inertia behind it at .tie."):
+    with pytest.warns(cw.StoppedEarly, match="the shaft without inertia beside it at .tie."):
         run = d.simulate(1.0, work=False)
     assert run.status == "jammed", (seed, run.message)
     assert len(run) == 0 if at == 0.0 else run.time[-1] == pytest.approx(at, rel=1e-4), seed

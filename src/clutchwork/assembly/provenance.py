@@ -151,7 +151,7 @@ class SystemParameter:
         return made is not None and _is_value(made, differing(self._system, made), self.reach, value)
 
 
-class Together:
+class JointChanges:
     """Whether numbers of a System act on its words apart from each other, where several change at once."""
 
     def __init__(self, system: SystemData, numbers: Mapping[str, SystemParameter]) -> None:

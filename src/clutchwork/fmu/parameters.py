@@ -7,7 +7,7 @@ from itertools import combinations
 from math import isnan, nan
 from numbers import Real
 
-from clutchwork.assembly.provenance import SystemParameter, Together
+from clutchwork.assembly.provenance import JointChanges, SystemParameter
 from clutchwork.assembly.system import System
 from clutchwork.fmu.variables import FmuVariable, LeftOut, Place, VariableKind
 
@@ -53,7 +53,7 @@ def _reason(found: SystemParameter) -> str:
 
 def _acting_together(system: System, free: Mapping[str, SystemParameter]) -> dict[str, str]:
     """Numbers that do not add up with others that come before them, such as a stiffness and a twist at the start."""
-    together = Together(system, free)
+    together = JointChanges(system, free)
     if together.add_up(list(free)):
         return {}
     reasons = dict[str, str]()

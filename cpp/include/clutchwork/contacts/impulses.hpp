@@ -157,7 +157,7 @@ bool stops_short(const Workspace<T>& ws, int located) {
 template <class T>
 bool stops_much(const Workspace<T>& ws, int located, double energy) {
   constexpr double least = 1e-10;
-  if (located < 0 || ws.contact.mode[located] != locked || is_rigid(ws, located)) return false;
+  if (ws.ratios.n == 0 || located < 0 || ws.contact.mode[located] != locked || is_rigid(ws, located)) return false;
   const int d = int(ws.sys.elements) + located;
   const double slip = value(rate_of(ws, d));
   return 0.5 * slip * slip > least * energy * value(ws.geometry.own[d]);

@@ -69,6 +69,7 @@ CLUTCHWORK_INLINE Truth<T> stays_clear(const Workspace<T>& ws, int k, Real<T> si
 /// Whether a rate stays where it is over the step, but for round-off of the torques: what is held rigidly at a kink.
 template <class T>
 bool idles(const Workspace<T>& ws, const LineGuard& guard, double h, double g0, double g1) {
+  if (guard.kind != LineGuard::edge) return false;
   const auto &e0 = ws.step_start, &e1 = ws.step_end;
   const double own = value(ws.geometry.own[ws.branch[guard.branch].direction]);
   const double still = 1e-6 * ws.guard.zero + 1e-14 * h * torque_size(ws) * own;

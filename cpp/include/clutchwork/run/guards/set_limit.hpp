@@ -29,16 +29,6 @@ template <class Form>
   hit.take(s, k);
 }
 
-/// An independent contact of a set whose torque has a pole in the step; -1: none has.
-template <class T>
-int pole_in_set(const Workspace<T>& ws, int k) {
-  for (int i = 0; ws.ratios.n > 0 && i < ws.held.set_rank[k]; ++i) {
-    const int a = ws.held.set_place[ws.held.set_first[k] + i];
-    if (has_pole(ws, a)) return a;
-  }
-  return -1;
-}
-
 /// A dependent set of locked contacts at its limit load.
 struct SetLimit : OwnScale {
   static constexpr const char* name = "set";
@@ -63,14 +53,12 @@ struct SetLimit : OwnScale {
       }
       for (int i = ws.held.set_first[k]; i < ws.held.set_first[k + 1]; ++i)
         bends = bends || load_bends(ws, ws.held.set_member[i]);
-      const int pole = pole_in_set(ws, k);
-      if (pole < 0 && !bends && !ends_elsewhere(ws, hit) && smaller(before, after) > change) continue;
+      if (!bends && !ends_elsewhere(ws, hit) && smaller(before, after) > change) continue;
       fit(form, step);
       auto f = [&](double s) {
         torques_at(form, step, s);
         return value(set_room(ws, k, ws.observed.carried, ws.step_start.noise[0], ws.loads.now));
       };
-      if (pole >= 0) hit.take(before_pole(ws, pole, f, before, hit.s), k);
       const double s = first_crossing(f, before, after, hit.s);
       hit.take(s, k);
     }
