@@ -6,33 +6,18 @@ compiler is that of the WebAssembly (the extra `wasm`). docs/guide/fmu.md
 
 from __future__ import annotations
 
-import subprocess
 import sys
 import time
 from collections.abc import Iterator
 from pathlib import Path
 
+from build_wasm import FLAGS, HOT, generated, zig
+
 ROOT = Path(__file__).resolve().parent.parent
 MADE = ROOT / "build" / "fmu"
 NAMES = ("c_api", "components", "local", "lanes", "phases_small", "phases_sparse", "phases_full", "fixed_steps")
-# what a step spends its time in is inlined by force, as in the native build
-HOT = {"phases_small", "phases_sparse"}
-FLAGS = (
-    "-std=c++20",
-    "-O2",
-    "-g0",
-    "-ffp-contract=off",
-    "-fno-math-errno",
-    "-fno-exceptions",
-    "-fno-rtti",
-    "-fvisibility=hidden",
-    "-ffunction-sections",
-    # own allocation stays inside
-    "-fvisibility-global-new-delete-hidden",
-    # one step for all small sizes, to the bits of those that are compiled for each; one run at a time
-    "-DCLUTCHWORK_ONE_SIZE",
-    "-DCLUTCHWORK_ALONE",
-)
+# those of the WebAssembly, and what a shared library needs; own allocation stays inside; one run at a time
+MORE = ("-O2", "-ffunction-sections", "-fvisibility-global-new-delete-hidden", "-DCLUTCHWORK_ALONE")
 # by platform: what the compiler calls it, and how the file ends; glibc of 2012
 TARGETS = {
     "x86_64-linux": ("x86_64-linux-gnu.2.17", ".so"),
@@ -43,23 +28,6 @@ TARGETS = {
 }
 
 
-def zig(target: str, *arguments: object) -> None:
-    """Call the compiler; SystemExit with what it said where it fails."""
-    command = [sys.executable, "-m", "ziglang", "c++", "-target", target, *map(str, arguments)]
-    done = subprocess.run(command, capture_output=True, text=True, check=False)  # noqa: S603 - the compiler
-    if done.returncode != 0:
-        raise SystemExit(f"{' '.join(command)}\n{done.stdout}{done.stderr}")
-
-
-def includes() -> list[str]:
-    """Folders of headers, generated ones among them."""
-    folder = MADE / "include" / "clutchwork"
-    folder.mkdir(parents=True, exist_ok=True)
-    generator = ROOT / "tools" / "gen_registry.py"
-    subprocess.run([sys.executable, "-I", "-S", generator, ROOT, folder], check=True)  # noqa: S603 - our own tool
-    return [f"-I{place}" for place in (ROOT / "cpp" / "include", ROOT / "cpp" / "src", folder.parent)]
-
-
 def library(platform: str, where: Path) -> Path:
     """Compile and link one library into a folder."""
     target, ending = TARGETS[platform]
@@ -67,17 +35,18 @@ def library(platform: str, where: Path) -> Path:
     folder.mkdir(parents=True, exist_ok=True)
     sources = [ROOT / "cpp" / "src" / f"{name}.cpp" for name in NAMES]
     sources += sorted((ROOT / "interfaces" / "fmi").glob("*.cpp"))
-    found, objects = includes(), list[Path]()
+    places = (ROOT / "cpp" / "include", ROOT / "cpp" / "src", generated())
+    flags, objects = (*FLAGS, *MORE, *(f"-I{place}" for place in places)), list[Path]()
     for source in sources:
         made = folder / f"{source.stem}.o"
         inlined = () if source.stem in HOT else ("-DCLUTCHWORK_HOT=inline",)
-        zig(target, *FLAGS, *inlined, *found, "-c", source, "-o", made)
+        zig("-target", target, *flags, *inlined, "-c", source, "-o", made)
         objects.append(made)
     path = where / f"{platform}{ending}"
     exports = ROOT / "interfaces" / "fmi" / "exports.map"
     plain = ["-s", "-Wl,--gc-sections", f"-Wl,--version-script={exports}"]
     sections = plain if ending == ".so" else ["-s"] if ending == ".dll" else []
-    zig(target, "-shared", *sections, *objects, "-o", path)
+    zig("-target", target, "-shared", *sections, *objects, "-o", path)
     # the linker of Windows leaves lists for programs that link with it
     for spare in (*where.glob("*.lib"), *where.glob("*.pdb")):
         spare.unlink()

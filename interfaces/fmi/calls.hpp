@@ -1,4 +1,6 @@
 #pragma once
+#include <cstring>
+
 #include "instance.hpp"
 
 /// What the doors of both versions share.
@@ -36,6 +38,48 @@ Answer each(std::size_t n, Each&& deed) {
   Answer answer = Answer::ok;
   for (std::size_t i = 0; i < n && int(answer) < int(Answer::discard); ++i) answer = worse(answer, deed(i));
   return answer;
+}
+
+// ------------------------------------------------------------------------------ states: alike in both versions
+
+inline int get_state(Instance* instance, const char* call, void** state) {
+  return int(allowed(instance, any_stage, call, [&](Instance& it) {
+    if (state == nullptr) return it.refuse(std::string(call) + " has no place for the state");
+    delete static_cast<State*>(*state);
+    return *state = it.state(), Answer::ok;
+  }));
+}
+
+inline int free_state(Instance* instance, const char* call, void** state) {
+  return int(allowed(instance, any_stage, call, [&](Instance&) {
+    if (state != nullptr) delete static_cast<State*>(*state), *state = nullptr;
+    return Answer::ok;
+  }));
+}
+
+inline int state_size(Instance* instance, const char* call, void* state, std::size_t* size) {
+  return int(allowed(instance, any_stage, call, [&](Instance& it) {
+    if (state == nullptr || size == nullptr) return it.refuse("there is no state");
+    *size = it.serialized(*static_cast<State*>(state)).size();
+    return *size > 0 ? Answer::ok : it.refuse("the state cannot be saved");
+  }));
+}
+
+inline int serialize_state(Instance* instance, const char* call, void* state, void* bytes, std::size_t size) {
+  return int(allowed(instance, any_stage, call, [&](Instance& it) {
+    if (state == nullptr || bytes == nullptr) return it.refuse("there is no state");
+    const auto made = it.serialized(*static_cast<State*>(state));
+    if (made.empty() || size < made.size()) return it.refuse("there is too little room for the state");
+    return std::memcpy(bytes, made.data(), made.size()), Answer::ok;
+  }));
+}
+
+inline int deserialize_state(Instance* instance, const char* call, const void* bytes, std::size_t size, void** state) {
+  return int(allowed(instance, any_stage, call, [&](Instance& it) {
+    if (state == nullptr) return it.refuse(std::string(call) + " has no place for the state");
+    State* made = it.deserialized(static_cast<const unsigned char*>(bytes), std::int64_t(size));
+    return made == nullptr ? Answer::error : (*state = made, Answer::ok);
+  }));
 }
 
 }  // namespace clutchwork::fmi

@@ -216,13 +216,7 @@ FMI_EXPORT int fmi2GetStringStatus(void*, int, const char**) { return int(Answer
 
 // ------------------------------------------------------------------------------------------------------------- states
 
-FMI_EXPORT int fmi2GetFMUstate(void* c, void** state) {
-  return int(allowed(of(c), any_stage, "fmi2GetFMUstate", [&](Instance& it) {
-    if (state == nullptr) return it.refuse("fmi2GetFMUstate has no place for the state");
-    delete static_cast<State*>(*state);
-    return *state = it.state(), Answer::ok;
-  }));
-}
+FMI_EXPORT int fmi2GetFMUstate(void* c, void** state) { return get_state(of(c), "fmi2GetFMUstate", state); }
 
 FMI_EXPORT int fmi2SetFMUstate(void* c, void* state) {
   return int(allowed(of(c), any_stage, "fmi2SetFMUstate", [&](Instance& it) {
@@ -230,36 +224,18 @@ FMI_EXPORT int fmi2SetFMUstate(void* c, void* state) {
   }));
 }
 
-FMI_EXPORT int fmi2FreeFMUstate(void* c, void** state) {
-  return int(allowed(of(c), any_stage, "fmi2FreeFMUstate", [&](Instance&) {
-    if (state != nullptr) delete static_cast<State*>(*state), *state = nullptr;
-    return Answer::ok;
-  }));
-}
+FMI_EXPORT int fmi2FreeFMUstate(void* c, void** state) { return free_state(of(c), "fmi2FreeFMUstate", state); }
 
 FMI_EXPORT int fmi2SerializedFMUstateSize(void* c, void* state, std::size_t* size) {
-  return int(allowed(of(c), any_stage, "fmi2SerializedFMUstateSize", [&](Instance& it) {
-    if (state == nullptr || size == nullptr) return it.refuse("there is no state");
-    *size = it.serialized(*static_cast<State*>(state)).size();
-    return *size > 0 ? Answer::ok : it.refuse("the state cannot be saved");
-  }));
+  return state_size(of(c), "fmi2SerializedFMUstateSize", state, size);
 }
 
 FMI_EXPORT int fmi2SerializeFMUstate(void* c, void* state, char bytes[], std::size_t size) {
-  return int(allowed(of(c), any_stage, "fmi2SerializeFMUstate", [&](Instance& it) {
-    if (state == nullptr || bytes == nullptr) return it.refuse("there is no state");
-    const auto made = it.serialized(*static_cast<State*>(state));
-    if (made.empty() || size < made.size()) return it.refuse("there is too little room for the state");
-    return std::memcpy(bytes, made.data(), made.size()), Answer::ok;
-  }));
+  return serialize_state(of(c), "fmi2SerializeFMUstate", state, bytes, size);
 }
 
 FMI_EXPORT int fmi2DeSerializeFMUstate(void* c, const char bytes[], std::size_t size, void** state) {
-  return int(allowed(of(c), any_stage, "fmi2DeSerializeFMUstate", [&](Instance& it) {
-    if (state == nullptr) return it.refuse("fmi2DeSerializeFMUstate has no place for the state");
-    State* made = it.deserialized(reinterpret_cast<const unsigned char*>(bytes), std::int64_t(size));
-    return made == nullptr ? Answer::error : (*state = made, Answer::ok);
-  }));
+  return deserialize_state(of(c), "fmi2DeSerializeFMUstate", bytes, size, state);
 }
 
 FMI_EXPORT int fmi2GetDirectionalDerivative(void* c, const Reference*, std::size_t, const Reference*, std::size_t,

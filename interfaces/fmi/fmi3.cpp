@@ -365,13 +365,7 @@ FMI_EXPORT int fmi3DoStep(void* c, double from, double size, bool, bool* event, 
 
 // ------------------------------------------------------------------------------------------------------------- states
 
-FMI_EXPORT int fmi3GetFMUState(void* c, void** state) {
-  return int(allowed(of(c), any_stage, "fmi3GetFMUState", [&](Instance& it) {
-    if (state == nullptr) return it.refuse("fmi3GetFMUState has no place for the state");
-    delete static_cast<State*>(*state);
-    return *state = it.state(), Answer::ok;
-  }));
-}
+FMI_EXPORT int fmi3GetFMUState(void* c, void** state) { return get_state(of(c), "fmi3GetFMUState", state); }
 
 FMI_EXPORT int fmi3SetFMUState(void* c, void* state) {
   return int(allowed(of(c), any_stage, "fmi3SetFMUState", [&](Instance& it) {
@@ -383,34 +377,16 @@ FMI_EXPORT int fmi3SetFMUState(void* c, void* state) {
   }));
 }
 
-FMI_EXPORT int fmi3FreeFMUState(void* c, void** state) {
-  return int(allowed(of(c), any_stage, "fmi3FreeFMUState", [&](Instance&) {
-    if (state != nullptr) delete static_cast<State*>(*state), *state = nullptr;
-    return Answer::ok;
-  }));
-}
+FMI_EXPORT int fmi3FreeFMUState(void* c, void** state) { return free_state(of(c), "fmi3FreeFMUState", state); }
 
 FMI_EXPORT int fmi3SerializedFMUStateSize(void* c, void* state, std::size_t* size) {
-  return int(allowed(of(c), any_stage, "fmi3SerializedFMUStateSize", [&](Instance& it) {
-    if (state == nullptr || size == nullptr) return it.refuse("there is no state");
-    *size = it.serialized(*static_cast<State*>(state)).size();
-    return *size > 0 ? Answer::ok : it.refuse("the state cannot be saved");
-  }));
+  return state_size(of(c), "fmi3SerializedFMUStateSize", state, size);
 }
 
 FMI_EXPORT int fmi3SerializeFMUState(void* c, void* state, std::uint8_t bytes[], std::size_t size) {
-  return int(allowed(of(c), any_stage, "fmi3SerializeFMUState", [&](Instance& it) {
-    if (state == nullptr || bytes == nullptr) return it.refuse("there is no state");
-    const auto made = it.serialized(*static_cast<State*>(state));
-    if (made.empty() || size < made.size()) return it.refuse("there is too little room for the state");
-    return std::memcpy(bytes, made.data(), made.size()), Answer::ok;
-  }));
+  return serialize_state(of(c), "fmi3SerializeFMUState", state, bytes, size);
 }
 
 FMI_EXPORT int fmi3DeserializeFMUState(void* c, const std::uint8_t bytes[], std::size_t size, void** state) {
-  return int(allowed(of(c), any_stage, "fmi3DeserializeFMUState", [&](Instance& it) {
-    if (state == nullptr) return it.refuse("fmi3DeserializeFMUState has no place for the state");
-    State* made = it.deserialized(bytes, std::int64_t(size));
-    return made == nullptr ? Answer::error : (*state = made, Answer::ok);
-  }));
+  return deserialize_state(of(c), "fmi3DeserializeFMUState", bytes, size, state);
 }
