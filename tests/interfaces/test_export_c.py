@@ -17,6 +17,7 @@ from clutchwork.assembly.wiring import wiring
 from clutchwork.command.main import main
 from clutchwork.results.channels import Channels
 from clutchwork.run.begin import new_run
+from support.project import ROOT
 
 feature = pytest.mark.feature
 
@@ -25,6 +26,8 @@ T_END, DT = 1.2, 0.01
 CLOSE: dict[str, Any] = {"rtol": 1e-12, "atol": 1e-12}
 # quick to compile; without optimisation the core inlines nothing by force
 FLAGS = ["CXXFLAGS=-O0 -DCLUTCHWORK_HOT=inline", "CFLAGS=-O1 -Wall -Wextra -pedantic -Werror"]
+
+SIMULINK = ROOT / "tests" / "support" / "simulink"
 
 # sets the torque from outside at half time, in C, and gives the piston other pieces of its command
 INPUT_C = """
@@ -162,6 +165,27 @@ def test_inputs_are_set_from_outside_in_c(built: Path) -> None:
     np.testing.assert_array_equal([float(number) for number in told.split()], expected)
 
 
+def test_the_s_function_steps_as_a_simulator_does(built: Path) -> None:
+    """The file as `mex` takes it, beside a stand-in for Simulink's header."""
+    parts = ["build/model.o", "build/model_system.o", "build/libclutchwork.a", "-lm"]
+    strict = ["-std=c11", "-Wall", "-Wextra", "-Wno-unused-function", "-Werror"]
+    folders = ["-I.", "-Icore/include", f"-I{SIMULINK}"]
+    subprocess.run(["cc", *strict, *folders, "model_sfun.c", *parts, "-o", "block"], cwd=built, check=True)
+    printed = subprocess.run([built / "block"], capture_output=True, text=True, check=True).stdout
+    found = np.loadtxt(io.StringIO(printed)).T
+    sim = cw.Simulator(driveline(), rtol=1e-8)
+    sim.set("load.torque", 0.0)
+    names = ["engine.speed", "wheel (2).speed", "c1.temperature", "piston.pressure"]
+    rows = [sim[names]]
+    for k in range(100):
+        sim.set("load.torque", 0.0 if k < 50 else -40.0)
+        sim.advance_to((k + 1) * 0.01)
+        rows.append(sim[names])
+    heads, _ = table(built / "model")
+    for name, column in zip(names, np.array(rows).T, strict=True):
+        np.testing.assert_allclose(found[heads.index(name) - 1], column, err_msg=name, rtol=1e-9)
+
+
 # every allocation ends the program; what it computes is in its exit code
 ALONE_C = """
 #include <stddef.h>
@@ -261,6 +285,7 @@ def test_the_folder_holds_all_that_is_needed(folder: Path) -> None:
     header = (folder / "model.h").read_text(encoding="utf-8")
     assert "MODEL_ROW_ENGINE_SPEED = 0, /* engine.speed [rad/s] */" in header
     assert "MODEL_OUTSIDE = 1," in header
+    assert f"MODEL_INPUTS = {len(driveline().assemble().inputs)}," in header
     assert "MODEL_INPUT_LOAD_TORQUE" in header
     assert "MODEL_PARAM_C1_GAIN" in header
     assert "MODEL_STATUS_DONE = 0," in header

@@ -142,7 +142,8 @@ def _enumerations(model: Exported) -> Iterator[str]:
     )
     names = identifiers("MODEL_INPUT_", [item.name for item in model.system.inputs])
     inputs = [(name, k, _input(model, k)) for k, name in enumerate(names)]
-    yield from enumeration("model_input", [*inputs, ("MODEL_OUTSIDE", len(model.outside), "from outside alone")])
+    counts = [("MODEL_INPUTS", len(inputs), "all"), ("MODEL_OUTSIDE", len(model.outside), "from outside alone")]
+    yield from enumeration("model_input", [*inputs, *counts])
     yield from ("", "/* Numbers that model_set_param changes: unit, bounds, and when. */")
     settable = model.settable
     count = len(model.system.arrays["params"])
