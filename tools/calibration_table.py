@@ -15,7 +15,7 @@ from typing import Any
 ROOT = Path(__file__).resolve().parents[1]
 GUIDE = ROOT / "docs" / "guide" / "calibrate.md"
 COLUMNS = (
-    "shift", "jerk before", "least, of the drawing", "of other starts", "least, worst of the samples", "limits",
+    "shift", "jerk before", "least, nominal linings", "of other starts", "least, worst of the samples", "limits",
     "hold in", "worst of these",
 )  # fmt: skip
 HEAD = f"| {' | '.join(COLUMNS)} |\n{'|---' * len(COLUMNS)}|\n"
@@ -37,7 +37,7 @@ def example() -> Any:
 
 
 def row(shift: Any) -> str:
-    """Calibrate a shift for the drawing and for production, and run gearboxes that the search has not seen."""
+    """Calibrate a shift for nominal linings and for production, and run gearboxes that the search has not seen."""
     name, unit, limits = LIMITS[shift.name]
     nominal = example().calibrated(shift)
     found = example().robust(shift, nominal.system)

@@ -16,7 +16,7 @@ import calibrate_shift  # noqa: E402
 
 
 def write(folder: Path) -> list[Path]:
-    """Calibrate the shift of the eight-speed box for the linings of the drawing; before and after, and the front."""
+    """Calibrate the shift of the eight-speed box for nominal linings; before and after, and the front."""
     folder.mkdir(parents=True, exist_ok=True)
     path, front = folder / "calibrate_shift.png", folder / "calibrate_shift_front.png"
     shift = calibrate_shift.eight_speed()

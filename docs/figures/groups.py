@@ -13,7 +13,14 @@ PLOT = "src/clutchwork/plot/*.py"
 SCHEMATIC = "src/clutchwork/schematic/**/*.py"
 DIAGRAMS = "src/clutchwork/diagrams/**/*.py"
 CATALOGUE = "src/clutchwork/gearbox/catalogue/*.toml"
-STORIES = ("start", "thermal-launch", "wet-clutch", "shift-controller", "learn", "robotics")
+STORIES = (
+    "start",
+    "thermal-launch",
+    "wet-clutch",
+    "shift-controller",
+    "learn",
+    "robotics",
+)
 
 
 @dataclass(frozen=True)

@@ -1,6 +1,6 @@
 """Two gear shifts calibrated for least jerk.
 
-First for the linings of the drawing, with what more heat would buy, then for linings that scatter by 10 %.
+First for nominal linings, with what more heat would buy, then for linings that scatter by 10 %.
 """
 
 from __future__ import annotations
@@ -44,7 +44,7 @@ class Shift:
 
     @property
     def linings(self) -> dict[str, Any]:
-        """Linings of both clutches, each within 10 % of the drawing."""
+        """Linings of both clutches, each within 10 % of its nominal value."""
         return {f"lining {name}": cw.together(f"{name}.gain", factor=(0.9, 1.1)) for name in self.clutches}
 
 
@@ -117,7 +117,7 @@ def eight_speed() -> Shift:
 
 
 def calibrated(shift: Shift) -> cw.Calibration:
-    """The pressures with the least jerk for the linings of the drawing."""
+    """The pressures with the least jerk for nominal linings."""
     given = {"free": shift.free, "minimise": shift.jerk, "subject_to": shift.limits}
     return cw.calibrate(shift.system, shift.t_end, **given, **RUNS)
 
@@ -125,7 +125,7 @@ def calibrated(shift: Shift) -> cw.Calibration:
 def robust(shift: Shift, system: cw.System, samples: int = 64) -> cw.Calibration:
     """The pressures that keep all limits in all samples of production and have the least jerk of the worst of them."""
     limits = [*shift.limits, cw.limit(shift.jerk, upper=shift.worst)]
-    # it begins where the drawing led to
+    # it begins where nominal linings led to
     production = {"scatter": shift.linings, "samples": samples, "robust": "worst", "threads": 2, "starts": 1}
     given = {"free": shift.free, "minimise": shift.jerk, "subject_to": limits}
     return cw.calibrate(system, shift.t_end, **given, **production, **RUNS)
@@ -140,7 +140,7 @@ def main() -> None:
     for shift in (six_speed(), eight_speed()):
         began = time.perf_counter()
         nominal = calibrated(shift)
-        print(f"{shift.name}, the linings of the drawing, {time.perf_counter() - began:.1f} s\n\n{nominal}\n")
+        print(f"{shift.name}, nominal linings, {time.perf_counter() - began:.1f} s\n\n{nominal}\n")
         began = time.perf_counter()
         front = nominal.front(f"{shift.clutches[0]}.heat", shift.heats)
         print(f"jerk over heat, {time.perf_counter() - began:.1f} s\n\n{front}\n")

@@ -85,7 +85,7 @@ def test_points_that_graze_do_not_end_the_search(monkeypatch):
     def grazing(self, x):
         asked.append(x)
         if len(asked) % 2 == 0:
-            raise NoGradient(["c1 at 1 s grazes what it is watched for"])
+            raise NoGradient(["c1 at 1 s only just touches zero"])
         return exact(self, x)
 
     monkeypatch.setattr(Differentiable, "value_and_jacobian", grazing)

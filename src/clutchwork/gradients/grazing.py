@@ -81,7 +81,8 @@ def refused(system: System, grazes: Array, sizes: float) -> Iterator[tuple[float
         if graze[INDEX] < REFUSED:
             measure = f"abs(dg/dt)/scale = {graze[INDEX]:.2g} 1/s, below {REFUSED:g} 1/s"
             remedy = "move a number so that it passes clearly, or not at all"
-            yield time, f"{name} at {time:.9g} s grazes what it is watched for: {measure}; {remedy}"
+            why = "only just touches zero, so the time of this event has no derivative"
+            yield time, f"{name} at {time:.9g} s {why}: {measure}; {remedy}"
         if graze[DIFFERENCE] * sizes > APART:
             why = f"two events at {time:.9g} s, of which {name} is one, move apart with the numbers; separate them"
             yield time, why

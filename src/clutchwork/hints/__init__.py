@@ -1,1 +1,1 @@
-"""Hints: what an expert would say of a model or a run that is allowed, and perhaps not meant."""
+"""Hints: automatic diagnostics of a model or a run that is allowed, and perhaps not meant."""
