@@ -75,6 +75,10 @@ GROUPS = {
             PLOT,
         ),
     ),
+    "fixed-steps": Group(
+        "fixed_steps",
+        (CATALOGUE, "src/clutchwork/elements/transmission.py"),
+    ),
     "linear": Group("shuffle", (PLOT,), ("linearise",)),
     "pages": Group(
         "stand_ins",
