@@ -15,10 +15,13 @@
 #include <vector>
 
 #include "door.hpp"
+#include "many.hpp"
 
 namespace nb = nanobind;
 using Vector = nb::ndarray<double, nb::shape<-1>, nb::c_contig, nb::device::cpu>;
 using Matrix = nb::ndarray<double, nb::shape<-1, -1>, nb::c_contig, nb::device::cpu>;
+using Numbers = nb::ndarray<std::int64_t, nb::shape<-1>, nb::c_contig, nb::device::cpu>;
+using Statuses = nb::ndarray<std::int32_t, nb::shape<-1>, nb::c_contig, nb::device::cpu>;
 
 namespace {
 
@@ -225,6 +228,49 @@ std::vector<int> advance_group(const std::vector<Run*>& runs, double t_end) {
   return statuses;
 }
 
+/// Set a signal of some runs, each to a value of its own.
+void set_many(const std::vector<Run*>& runs, Numbers which, std::int64_t input, Vector values) {
+  if (values.shape(0) != which.shape(0)) throw nb::value_error("give a value for each run");
+  for (std::size_t i = 0; i < which.shape(0); ++i) {
+    const std::int64_t number = which.data()[i];
+    if (number < 0 || number >= std::int64_t(runs.size())) throw nb::index_error("no such run");
+    runs[std::size_t(number)]->set_input(input, values.data()[i]);
+  }
+}
+
+/// Let some runs go on, each up to its end: events of each thread, and what a signal handler raised meanwhile, or None.
+std::tuple<std::vector<std::vector<double>>, nb::object> advance_many(const std::vector<Run*>& runs, Numbers which,
+                                                                      Vector ends, Matrix rows, Statuses status,
+                                                                      int threads) {
+  namespace many = clutchwork::many;
+  const std::size_t count = runs.size();
+  if (ends.shape(0) != count || rows.shape(0) != count || status.shape(0) != count)
+    throw nb::value_error("give an end, a row and a status for each run");
+  many::Task task{{}, ends.data(), rows.data(), std::int64_t(rows.shape(1)), status.data()};
+  std::vector<bool> there(count, false);
+  for (std::size_t i = 0; i < which.shape(0); ++i) {
+    const std::int64_t number = which.data()[i];
+    if (number < 0 || number >= std::int64_t(count)) throw nb::index_error("no such run");
+    if (there[std::size_t(number)]) throw nb::value_error("a run appears twice");
+    there[std::size_t(number)] = true;
+    Run* run = runs[std::size_t(number)];
+    if (run == nullptr || run->row_size() != task.row_size) throw nb::value_error("rows must have row_size columns");
+    task.members.push_back({run->handle(), number});
+  }
+  clutchwork::Course course;
+  nb::object raised = nb::none();
+  std::vector<std::vector<double>> events;
+  {
+    nb::gil_scoped_release release;
+    events = many::advance_all(task, threads > 1 ? threads : 1, course, [&] {
+      nb::gil_scoped_acquire lock;
+      return clutchwork::door::heard(raised, [] {});
+    });
+  }
+  if (raised.is_none()) clutchwork::door::heard(raised, [] {});
+  return {std::move(events), raised};
+}
+
 }  // namespace
 
 NB_MODULE(_core, m) {
@@ -238,6 +284,10 @@ NB_MODULE(_core, m) {
   bind_sweep(m);
   m.def("advance_group", &advance_group, nb::arg("runs"), nb::arg("t_end"),
         "Advance runs to t_end [s] together, without output: a status for each.");
+  m.def("set_many", &set_many, nb::arg("runs"), nb::arg("which"), nb::arg("input"), nb::arg("values"),
+        "Set a signal of some runs, each to a value of its own.");
+  m.def("advance_many", &advance_many, nb::arg("runs"), nb::arg("which"), nb::arg("ends"), nb::arg("rows"),
+        nb::arg("status"), nb::arg("threads"), "Let some runs go on side by side, each up to an end of its own.");
   nb::class_<Run>(m, "Run", "One run of a frozen system: its memory, options, signals and results.")
       .def(nb::init<nb::bytes>(), nb::arg("system"))
       .def("set_option", &Run::set_option, nb::arg("name"), nb::arg("value"))

@@ -89,7 +89,7 @@ nb::tuple sweep(std::vector<nb::bytes> systems, std::vector<std::tuple<Whole, Wo
   std::vector<double> detail(variants * detail_size, __builtin_nan(""));
   std::vector<double> grid(parts > 0 ? 0 : variants * std::size_t(task.instants * task.width), __builtin_nan(""));
   const Results results{status.data(), detail.data(), grid.data()};
-  Course course;
+  clutchwork::Course course;
   nb::object raised = nb::none();
   std::vector<Found> found;
   {

@@ -3,19 +3,16 @@
 #include <clutchwork/layout.gen.hpp>
 
 #include <algorithm>
-#include <atomic>
 #include <chrono>
 #include <cmath>
-#include <condition_variable>
 #include <cstdint>
 #include <cstring>
-#include <exception>
 #include <memory>
-#include <mutex>
 #include <string>
-#include <thread>
 #include <utility>
 #include <vector>
+
+#include "threads.hpp"
 
 /// Many runs of one driveline with other numbers, on several threads. docs/guide/sweeps.md
 namespace clutchwork::sweep {
@@ -66,35 +63,6 @@ struct Results {
 struct Found {
   std::vector<std::int64_t> variant, rows;  ///< variants and how many rows each has
   std::vector<double> times, values, events;
-};
-
-/// How far all threads are, and whether they shall stop.
-class Course {
- public:
-  std::atomic<std::int64_t> next{0}, done{0};
-  std::atomic<bool> stop{false};
-  std::exception_ptr failure;
-
-  /// Asked by every run after every step.
-  static int stopped(void* self) { return static_cast<Course*>(self)->stop.load(std::memory_order_relaxed) ? 1 : 0; }
-
-  void leave(std::exception_ptr why) {
-    const std::lock_guard<std::mutex> lock(mutex_);
-    if (why) failure = why, stop = true;
-    ++left_;
-    changed_.notify_all();
-  }
-
-  /// Wait until so many threads have left, for a while at most. Whether they have.
-  bool wait(int threads, std::chrono::milliseconds most) {
-    std::unique_lock<std::mutex> lock(mutex_);
-    return changed_.wait_for(lock, most, [&] { return left_ == threads; });
-  }
-
- private:
-  std::mutex mutex_;
-  std::condition_variable changed_;
-  int left_ = 0;
 };
 
 /// One thread: its memory, and the variants it takes.
@@ -296,27 +264,7 @@ template <class Pause>
 std::vector<Found> run_all(const Task& task, const Results& results, int threads, Course& course, Pause&& pause) {
   std::vector<std::unique_ptr<Worker>> workers;
   for (int i = 0; i < threads; ++i) workers.push_back(std::make_unique<Worker>(task, results, course));
-  std::vector<std::thread> running;
-  int started = 0;
-  auto work = [&](Worker* worker) {
-    std::exception_ptr failure;
-    try {
-      worker->work();
-    } catch (...) {
-      failure = std::current_exception();
-    }
-    course.leave(failure);
-  };
-  try {
-    for (; started < threads; ++started) running.emplace_back(work, workers[std::size_t(started)].get());
-  } catch (...) {
-    // fewer threads do it too, none does not
-    if (started == 0) throw;
-  }
-  while (!course.wait(started, std::chrono::milliseconds(50)))
-    if (pause()) course.stop = true;
-  for (std::thread& thread : running) thread.join();
-  if (course.failure) std::rethrow_exception(course.failure);
+  on_threads(threads, course, pause, [&](int number) { workers[std::size_t(number)]->work(); });
   std::vector<Found> found;
   for (auto& worker : workers) found.push_back(std::move(worker->found));
   return found;

@@ -24,7 +24,7 @@ PUBLIC = [
     *("ClutchworkError", "Domain", "Driveline", "Element", "EnergyBalance", "Event", "Events", "FaultWarning"),
     *("Gearbox", "HeatFlow", "Hint", "Hints", "Interrupted", "Law", "Loss", "Losses"),
     *("ModelError", "ModelWarning", "Node", "OptionError", "Options", "Problem", "Rate", "Signal", "SimulationError"),
-    *("Simulator", "State", "StateError"),
+    *("Simulator", "Simulators", "State", "StateError"),
     *("StoppedEarly", "System", "ThermalNode", "Trajectory", "UnknownName", "UseError"),
     *(
         "compare",
@@ -60,7 +60,7 @@ PUBLIC = [
     *("Design", "design", "discrete", "log_uniform", "lognormal", "normal", "triangular", "truncated_normal"),
     "uniform",
     *("SobolIndices", "Study", "StudyError", "StudyInterrupted", "sobol_indices", "study"),
-    *("Moment", "environment"),
+    *("Moment", "Moments", "environment", "vector_environment"),
     *("Linear", "linearise", "linearize"),
     *("load_run", "read_columns"),
     "drive_cycle",

@@ -1,32 +1,29 @@
-"""An environment of Gymnasium around a driveline."""
+"""Environments of Gymnasium around a driveline, one or many."""
 
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Mapping
-from functools import partial
-from math import inf
 from typing import TYPE_CHECKING, Any, Unpack
 
-from clutchwork.base.errors import UseError
 from clutchwork.base.extras import need
 from clutchwork.base.quote import quote
-from clutchwork.declare import quantity
 from clutchwork.declare.calls import explained
-from clutchwork.declare.to_si import TargetUnit
 from clutchwork.learn.moment import Moment
-from clutchwork.learn.ranges import ranges
-from clutchwork.learn.variation import refuse_unfit, variation
-from clutchwork.model.changes import in_si, named, target
-from clutchwork.results.channels import channels
-from clutchwork.run.simulation import Assembles, model_of
+from clutchwork.learn.moments import Moments
+from clutchwork.learn.task import asked
+from clutchwork.run.simulation import Assembles
 from clutchwork.stepping.simulator import Simulator
+from clutchwork.stepping.simulators import Simulators
 
 if TYPE_CHECKING:
     from clutchwork.assembly.system import System
     from clutchwork.declare.node import Number
     from clutchwork.declare.option_fields import OptionFields
     from clutchwork.learn.gym import DrivelineEnv
+    from clutchwork.learn.vector import DrivelineVectorEnv
     from clutchwork.results.state import State
+
+MODES = 'give "rgb_array" or None'
 
 
 @explained("cw.environment")
@@ -60,30 +57,9 @@ def environment(
     UseError and ModelError name what is wrong with all of them.
     """
     need("gymnasium", "learn", "an environment")
-    system = model_of("cw.environment", model, None)
-    what, bad_actions = ranges("actions", actions, True, partial(_given, system))
-    seen, bad_observations = ranges("observations", observations, False, partial(_signal, system))
-    varies, tried, bad_variation = variation(vary or {}, partial(_given, system))
-    times = {name: TargetUnit("s").number(value) for name, value in (("t_end", t_end), ("period", period))}
-    wrong = [*bad_actions, *bad_observations, *bad_variation]
-    for name, value in times.items():
-        if isinstance(value, bool) or not isinstance(value, int | float) or not 0.0 < value < inf:
-            wrong.append(f"{name} is {quote(value)}: give a time above 0, in s or with a unit")
-    wrong += [
-        f"{name} is {quote(function)}: give a function of a Moment"
-        for name, function in (("reward", reward), ("ends", ends))
-        if not (callable(function) or (name == "ends" and function is None))
-    ]
-    if start is not None and not wrong and times["t_end"] <= start.time:
-        end = times["t_end"]
-        wrong.append(f"t_end is {end:g} s, and start is at {start.time:g} s: give a later end of the episodes")
-    if start is not None and vary:
-        wrong.append("vary needs a new start in every episode: give vary or start")
-    if render_mode not in (None, "rgb_array"):
-        wrong.append(f'render_mode is {quote(render_mode)}: give "rgb_array" or None')
-    if wrong:
-        raise UseError("cw.environment", wrong)
-    refuse_unfit(system, tried)
+    no_mode = [] if render_mode in (None, "rgb_array") else [f"render_mode is {quote(render_mode)}: {MODES}"]
+    times, functions = {"t_end": t_end, "period": period}, {"reward": reward, "ends": ends}
+    task = asked("cw.environment", model, times, actions, observations, vary or {}, functions, start, no_mode)
     # needs Gymnasium
     from clutchwork.learn.gym import DrivelineEnv
 
@@ -91,17 +67,47 @@ def environment(
         return Simulator(changed, start=start, **changes)
 
     return DrivelineEnv(
-        system, begin, what, seen, reward, ends, varies, (float(times["t_end"]), float(times["period"])), render_mode
+        task.system, begin, task.actions, task.observations, reward, ends, task.varies, task.times, render_mode
     )
 
 
-def _given(system: System, name: str, value: Any) -> Any:
-    """A value of what is set or varies, in SI."""
-    aim = target(named(system.source), name) if system.source is not None else None
-    return value if aim is None else in_si(aim, value)
+@explained("cw.vector_environment")
+def vector_environment(
+    model: Assembles | System,
+    count: int,
+    t_end: Number,
+    *,
+    actions: Mapping[str, tuple[Number, Number]],
+    observations: Mapping[str, tuple[Number, Number] | None] | Iterable[str],
+    reward: Callable[[Moments], Any],
+    period: Number = 0.01,
+    ends: Callable[[Moments], Any] | None = None,
+    vary: Mapping[str, Any] | None = None,
+    start: State | None = None,
+    autoreset: str = "next step",
+    threads: int | None = None,
+    **changes: Unpack[OptionFields],
+) -> DrivelineVectorEnv:
+    """Many environments of Gymnasium side by side, on all cores, as one `VectorEnv`. Needs gymnasium.
 
+    Use it to learn with many episodes at once. Parameters are those of `environment`, with count, how many; reward and
+    ends, functions of `Moments`, all steps at once, that return an array of a number, or whether, for each; autoreset,
+    what happens where an episode is over: "next step", its next step begins another one; "same step", the same does,
+    and `infos["final_obs"]` has what was seen last; "disabled", `reset(options={"reset_mask": ...})` is called;
+    threads, by default as many as processors.
 
-def _signal(system: System, name: str, value: Any) -> Any:
-    """A value of a signal of results, in SI."""
-    known = channels(system, True, True)
-    return quantity.in_si(value, known[name].unit) if name in known else value
+    UseError and ModelError name what is wrong with all of them.
+    """
+    need("gymnasium", "learn", "an environment")
+    modes = ("next step", "same step", "disabled")
+    no_mode = [] if autoreset in modes else [f"autoreset is {quote(autoreset)}: give one of {', '.join(modes)}"]
+    times, functions = {"t_end": t_end, "period": period}, {"reward": reward, "ends": ends}
+    task = asked("cw.vector_environment", model, times, actions, observations, vary or {}, functions, start, no_mode)
+    # needs Gymnasium
+    from gymnasium.vector import AutoresetMode
+
+    from clutchwork.learn.vector import DrivelineVectorEnv
+
+    sims = Simulators(task.system, count, start=start, threads=threads, **changes)
+    mode = AutoresetMode("".join(word.capitalize() for word in autoreset.split()))
+    return DrivelineVectorEnv(task, sims, reward, ends, mode)

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
 from math import inf, isfinite
-from numbers import Real
 from typing import TYPE_CHECKING, Any, NoReturn, Unpack
 
 import numpy as np
@@ -17,7 +16,6 @@ from clutchwork.base.quote import quote
 from clutchwork.declare.calls import explained, explained_methods
 from clutchwork.declare.layout import DONE, EVENTS_FULL
 from clutchwork.declare.options import Options
-from clutchwork.declare.quantity import QuantityError, has_unit, in_si
 from clutchwork.results.state import State, StateError
 from clutchwork.run.begin import begun, choose, put, seen, state_of
 from clutchwork.run.control import Controller, controllers, guests_of, instants, is_due, refuse_guests
@@ -26,6 +24,7 @@ from clutchwork.run.readings import Readings
 from clutchwork.run.settings import without_end
 from clutchwork.run.simulation import Assembles, begin_of, message_of, model_of, refuse_fixed
 from clutchwork.run.trajectory import SimulationError
+from clutchwork.stepping.clock import after, in_seconds, same
 from clutchwork.stepping.outside import Outside
 from clutchwork.stepping.past import Past
 from clutchwork.stepping.readout import Readout
@@ -37,8 +36,6 @@ if TYPE_CHECKING:
     from clutchwork.run.trajectory import Trajectory
 
 Array = NDArray[np.float64]
-# two instants that are closer are one, as a share of them
-ROUND_OFF = 1e-12
 OF_A_STATE = "give what sim.save(), run.state() or cw.State.load(path) returned"
 
 
@@ -98,20 +95,15 @@ class Simulator:
         A time that is a multiple of the duration but for round-off is that multiple. A run that cannot go on is a
         `SimulationError`, with the run so far in `trajectory`; time stands then, until `restore` or `reset`.
         """
-        step = _seconds("sim.advance", "duration", duration)
+        step = in_seconds("sim.advance", "duration", duration)
         if step < 0.0:
             raise UseError("sim.advance", [f"duration is {step:g} s: it must not be negative; use sim.restore(state)"])
-        end = self._time + step
-        if step > 0.0:
-            # as a decimal, which knots of tables are
-            whole = float(f"{round(end / step) * step:.15g}")
-            end = whole if _same(whole, end) else end
-        self._to(end)
+        self._to(after(self._time, step))
 
     @explained("sim.advance_to")
     def advance_to(self, time: float) -> None:
         """Go on up to a point in time [s]; errors are those of `advance`."""
-        end = _seconds("sim.advance_to", "time", time)
+        end = in_seconds("sim.advance_to", "time", time)
         if end < self._time:
             now = f"before the present time {self._time:.9g} s"
             raise UseError("sim.advance_to", [f"time is {end:.9g} s, {now}; sim.restore(state) goes back"])
@@ -124,7 +116,7 @@ class Simulator:
             if end > self._time:
                 self._stretch(end)
             return
-        end = next((at for one in self._controllers if _same(at := round(end / one.period) * one.period, end)), end)
+        end = next((at for one in self._controllers if same(at := round(end / one.period) * one.period, end)), end)
         for stop in instants(self._controllers, self._time, end) if end > self._time else ():
             self._control()
             self._stretch(stop)
@@ -410,25 +402,3 @@ class Simulator:
             number = value if isinstance(value, str) else f"{value:.6g}"
             lines.append((name, number, units[name], "set" if name in self.held else ""))
         return html.page(html.heading(repr(self)[1:-1]), html.table(("", "value", "unit", ""), lines, right={1}))
-
-
-def _same(one: float, other: float) -> bool:
-    """Whether two times are one within round-off."""
-    return abs(one - other) <= ROUND_OFF * other
-
-
-def _seconds(call: str, name: str, value: object) -> float:
-    """A finite time [s]; UseError for anything else."""
-    if type(value) is float and isfinite(value):
-        return value
-    given = _in_seconds(value) if has_unit(value) else value
-    if isinstance(given, bool) or not isinstance(given, Real) or not isfinite(float(given)):
-        raise UseError(call, [f"{name} is {quote(value)}: give a number in s"])
-    return float(given)
-
-
-def _in_seconds(value: object) -> object:
-    try:
-        return in_si(value, "s")
-    except QuantityError:
-        return None

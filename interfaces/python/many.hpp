@@ -1,0 +1,72 @@
+#pragma once
+#include <clutchwork/c_api.h>
+#include <clutchwork/layout.gen.hpp>
+
+#include <algorithm>
+#include <cstdint>
+#include <vector>
+
+#include "threads.hpp"
+
+/// Many runs that go on side by side, each up to an end of its own. docs/guide/stepping.md
+namespace clutchwork::many {
+
+/// Runs that one thread takes at once.
+constexpr std::int64_t chunk = 16;
+
+struct Member {
+  cw_run* run;
+  std::int64_t number;  ///< which it is: of its row, its status, its events
+};
+
+/// What is to be done, and where results go; each run is one thread's.
+struct Task {
+  std::vector<Member> members;
+  const double* ends;  ///< of each number [s]
+  double* rows;        ///< of each number, at its end
+  std::int64_t row_size;
+  std::int32_t* status;
+};
+
+/// Numbers of an event, after the number of its run.
+inline std::int64_t event_kept() { return 1 + cw_event_size(); }
+
+/// One run to its end, with the row there; its events follow those that were found before.
+inline int advance(const Task& task, const Member& member, std::vector<double>& events) {
+  double time = task.ends[member.number], *row = task.rows + member.number * task.row_size;
+  std::int64_t filled = 0, more = 0;
+  int status;
+  do {
+    status = cw_advance(member.run, time, &time, row, 1 - filled, 0, &more);
+    filled += more;
+    const std::int64_t n = cw_pending_events(member.run), size = cw_event_size();
+    for (std::int64_t i = 0; i < n; ++i) {
+      const std::size_t at = events.size();
+      events.resize(at + std::size_t(1 + size));
+      events[at] = double(member.number);
+      cw_take_events(member.run, events.data() + at + 1, 1);
+    }
+  } while (status == int(Status::events_full));
+  return status;
+}
+
+/// All of them on so many threads; the events of each thread.
+template <class Pause>
+std::vector<std::vector<double>> advance_all(const Task& task, int threads, Course& course, Pause&& pause) {
+  std::vector<std::vector<double>> events(std::size_t(threads), std::vector<double>{});
+  const auto count = std::int64_t(task.members.size());
+  on_threads(threads, course, pause, [&](int number) {
+    for (std::int64_t first; (first = course.next.fetch_add(chunk)) < count && !course.stop;) {
+      const std::int64_t last = std::min(first + chunk, count);
+      for (std::int64_t i = first; i < last && !course.stop; ++i) {
+        const Member& member = task.members[std::size_t(i)];
+        cw_set_poll(member.run, &Course::stopped, &course);
+        task.status[member.number] = advance(task, member, events[std::size_t(number)]);
+        cw_set_poll(member.run, nullptr, nullptr);
+      }
+    }
+  });
+  return events;
+}
+
+}  // namespace clutchwork::many
