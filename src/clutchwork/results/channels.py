@@ -1,9 +1,10 @@
 """Every signal of a System by name: its unit and how it follows from the output rows of the core.
 
 Nothing is computed before it is asked for. A torque is what its element puts on its follower (or shaft); power is
-torque times rate, the work done on the driveline; heat of a contact is minus its work, and holds what the bristles of
-its friction law store. States of a friction law stand under the name of the contact: "c1.elastic". Where a part of an
-element counts as the element, such as the drag of a clutch, its torque, power, work and heat are added.
+torque times rate, the work done on the driveline. Heat of a contact, a damper, a converter is minus its work, and holds
+what the bristles of a friction law store. States of a friction law stand under the name of the contact: "c1.elastic".
+Where a part of an element counts as the element, such as the drag of a clutch, its torque, power, work and heat are
+added.
 """
 
 from __future__ import annotations
@@ -20,7 +21,7 @@ from clutchwork.base.classes import dataclass
 from clutchwork.base.errors import UnknownName, near
 from clutchwork.base.memoize import memoize
 from clutchwork.base.quote import quote
-from clutchwork.declare.node import Domain
+from clutchwork.declare.node import Component, Domain, Work
 from clutchwork.declare.ports import directions
 from clutchwork.declare.wording import where_signals
 from clutchwork.model.variable_ratios import is_transmission
@@ -129,7 +130,10 @@ class Channels(Mapping[str, Channel]):
         yield f"{branch.name}.torque", Channel(TORQUE[branch.domain], torque)
         yield f"{branch.name}.rate", Channel(SPEED[branch.domain], rate)
         yield f"{branch.name}.power", Channel("W", Power(torque, rate))
-        yield f"{branch.name}.work", Channel("J", self._total("work", branch))
+        work = self._total("work", branch)
+        yield f"{branch.name}.work", Channel("J", work)
+        if _loses_all(branch.component) and branch.name == branch.component.name:
+            yield f"{branch.name}.heat", Channel("J", Total(work.indices, negative=True))
         if branch.component.supply:
             yield from self._supply(branch)
         yield from self._states(branch)
@@ -149,6 +153,8 @@ class Channels(Mapping[str, Channel]):
         work = Total(tuple(index for branch in acting for index in self._total("work", branch).indices))
         yield f"{name}.power", Channel("W", Powers(powers))
         yield f"{name}.work", Channel("J", work)
+        if _loses_all(first.component):
+            yield f"{name}.heat", Channel("J", Total(work.indices, negative=True))
         if is_transmission(first.component):
             yield f"{name}.torque", Channel(TORQUE[first.domain], self._total("torque", first))
 
@@ -229,6 +235,11 @@ class Channels(Mapping[str, Channel]):
 def channels(system: System, angles: bool = True, work: bool = True) -> Channels:
     """All signals of a System by name, found once; those that are not integrated are left out."""
     return Channels(wiring(system), angles=angles, work=work)
+
+
+def _loses_all(component: Component) -> bool:
+    """Whether all work that an element takes out of the driveline becomes heat."""
+    return component.work is Work.LOSS and not component.supply
 
 
 def _left_out(angles: bool, work: bool, wiring: Wiring) -> dict[str, str]:
