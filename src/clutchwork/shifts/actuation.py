@@ -70,6 +70,12 @@ class Actuation:
         out = [name for name in closed if self.is_dog(name) and now.sleeves.get(name, 1.0) < ENGAGED]
         return "; ".join(f"{listed(names)} {fault}" for names, fault in ((slips, "slips"), (out, "is out")) if names)
 
+    def holds(self, name: str, now: Measured, with_: ShiftSettings) -> bool:
+        """Whether an element is closed and does not slip."""
+        if self.is_dog(name):
+            return now.sleeves.get(name, 0.0) > ENGAGED
+        return self.commands.get(name, 0.0) > 0.0 and abs(now.slips[name]) < with_.sync_slip
+
     def open(self, *names: str) -> None:
         """Take all pressure away, or pull the sleeve out."""
         self.commands.update({name: 0.0 for name in names if name in self._signals})

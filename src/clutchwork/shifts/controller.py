@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
@@ -11,7 +11,9 @@ from clutchwork.base.quote import listed, quote
 from clutchwork.shifts.actuation import Actuation
 from clutchwork.shifts.choice import GearChoice
 from clutchwork.shifts.course import ExchangeSequence
-from clutchwork.shifts.exchange import Exchange, exchanges
+from clutchwork.shifts.exchange import Exchange, exchanges, ratio_of
+from clutchwork.shifts.handover import Handover, handover, is_straight
+from clutchwork.shifts.parallel import ParallelSequence
 from clutchwork.shifts.plant import Plant
 from clutchwork.shifts.record import NEUTRAL, Measured, ShiftRecord
 from clutchwork.shifts.settings import ShiftSettings
@@ -67,8 +69,8 @@ class ShiftController:
     pause: float = 0.3  # s, from the end of a shift to the next one that the schedule asks for
     # what it remembers
     records: list[ShiftRecord] = field(default_factory=list)
-    _left: list[Exchange] = field(default_factory=list)
-    _course: ExchangeSequence | None = None
+    _left: list[Exchange | Handover] = field(default_factory=list)
+    _course: ExchangeSequence | ParallelSequence | None = None
     _called: float = 0.0  # s
     _ended: float = 0.0  # s, end of the last shift
 
@@ -99,8 +101,8 @@ class ShiftController:
         course = self._course
         if self._choice.stalls(self.gear, course is not None and not course.one.off, period, now):
             self._abandon(time, NEUTRAL, "let go before the engine stalled")
-        elif course is not None and course.state in ("mesh", "fill") and self._choice.wanted not in ("", self.gear):
-            self._call_off(time)
+        elif course is not None and self._choice.wanted not in ("", self.gear):
+            self._change_mind(course, time, period, now)
         if self._course is None:
             wanted = self._choice.take(self.gear, time - self._ended >= self.pause - 1e-9, now)
             if wanted:
@@ -143,7 +145,7 @@ class ShiftController:
 
     def _start(self, gear: str, time: float, now: Measured) -> None:
         before, after = self._do.closed_in(self.gear), self._do.closed_in(gear)
-        self._left = list(exchanges(self.box, before, after, self.plant.inertias))
+        self._left = list(self._plan(before, after, now.input_torque))
         self.records.append(ShiftRecord(self.gear, gear, time, now.input_torque >= 0.0, tuple(self._left)))
         self.gear, self._choice.let_go = gear, ""
         if self._left:
@@ -152,9 +154,39 @@ class ShiftController:
             self._do.only(gear, self.settings)
             self._finish(time)
 
+    def _plan(self, before: tuple[str, ...], after: tuple[str, ...], torque: float) -> tuple[Exchange | Handover, ...]:
+        """All elements at once where statics say how, else one exchange after the other."""
+        off, on = (tuple(n for n in a if n not in b) for a, b in ((before, after), (after, before)))
+        ratios = ratio_of(self.box, before), ratio_of(self.box, after)
+        if off and on and ratios[0] * ratios[1] > 0.0:
+            kept = tuple(name for name in after if name in before)
+            one = self._handover(off, on, kept)
+            if one is not None and is_straight(self.box, one, torque):
+                return (one,)
+        way = exchanges(self.box, before, after, self.plant.inertias)
+        singles = [self._alone(one) for one in way]
+        known = tuple(one for one in singles if one is not None)
+        return known if len(known) == len(way) else way
+
+    def _handover(self, off: Sequence[str], on: Sequence[str], kept: Sequence[str]) -> Handover | None:
+        return handover(self.box, off, on, kept, self.plant.inertias)
+
+    def _alone(self, one: Exchange) -> Handover | None:
+        """An exchange of two elements that slip, as the handover that it is."""
+        if not one.off or not one.on:
+            return None
+        return self._handover((one.off,), (one.on,), one.kept)
+
     def _begin(self, time: float) -> None:
         """The next exchange."""
         one, record = self._left[0], self.records[-1]
+        if isinstance(one, Handover):
+            opens = tuple(name for name in self._do.kinds if name not in (*one.kept, *one.elements))
+            filled = len(self._left) < len(record.exchanges)
+            ahead = self._left[1].on if len(self._left) > 1 else ()
+            self._course = ParallelSequence(one, self._with(record), self._do, self._handover, time, opens, filled, ahead)
+            record.phases.append((time, self._course.state))
+            return
         opens = tuple(name for name in self._do.kinds if name not in (*one.kept, one.off, one.on))
         opens += (one.on,) if not one.off else ()
         filled = len(self._left) < len(record.exchanges)
@@ -166,10 +198,10 @@ class ShiftController:
         """Calibration of a shift."""
         return self.chosen.get((record.before, record.after), self.chosen.get(record.kind, self.settings))
 
-    def _go_on(self, course: ExchangeSequence, time: float, period: float, now: Measured) -> None:
+    def _go_on(self, course: ExchangeSequence | ParallelSequence, time: float, period: float, now: Measured) -> None:
         new = course.step(time, period, now)
         if new == "failed":
-            self._abandon(time, self.records[-1].before, f"{course.one.on} did not engage")
+            self._fail(course, time, now)
         elif new == "done":
             self._left.pop(0)
             if self._left:
@@ -179,6 +211,43 @@ class ShiftController:
                 self._finish(time, self._do.wrong(self.gear, course.with_, now))
         elif new:
             self.records[-1].phases.append((time, new))
+
+    def _fail(self, course: ExchangeSequence | ParallelSequence, time: float, now: Measured) -> None:
+        """Back to the gear before."""
+        record = self.records[-1]
+        if isinstance(course, ParallelSequence):
+            why = f"the input did not come to its new speed within {time - course.since:.2g} s"
+            self._go_over(course, record.before, why, time, now)
+        else:
+            self._abandon(time, record.before, f"{course.one.on} did not engage")
+
+    def _change_mind(
+        self, course: ExchangeSequence | ParallelSequence, time: float, period: float, now: Measured
+    ) -> None:
+        """The driver wants another gear while a shift goes on: at once where its elements slip, or later."""
+        if isinstance(course, ParallelSequence):
+            wanted, self._choice.wanted = self._choice.wanted, ""
+            if not self._go_over(course, wanted, f"changed to {wanted}", time, now):
+                self._choice.wanted = wanted
+        elif course.state in ("mesh", "fill"):
+            self._call_off(time)
+
+    def _go_over(self, course: ParallelSequence, gear: str, why: str, time: float, now: Measured) -> bool:
+        """From the middle of a shift into another gear; whether it can be."""
+        after, full = self._do.closed_in(gear), course.with_.full_pressure
+        stuck = [name for name in after if self._do.holds(name, now, course.with_)]
+        kept = tuple(name for name in after if name in stuck)
+        on = tuple(name for name in after if name not in kept)
+        off = tuple(n for n in self._do.kinds if n not in after and self._do.commands.get(n, 0.0) > 0.0)
+        one = self._handover(off, on, kept)
+        if one is None or gear not in self.box.gears:
+            return False
+        before = self.records[-1].before if gear != self.records[-1].before else self.records[-1].after
+        self.records[-1].end, self.records[-1].problem = time, why
+        self.records.append(ShiftRecord(before, gear, time, now.input_torque >= 0.0, (one,)))
+        self._left, self.gear = [one], gear
+        self._begin(time)
+        return True
 
     def _call_off(self, time: float) -> None:
         """The driver wants another gear, and nothing was exchanged yet."""

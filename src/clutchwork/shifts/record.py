@@ -6,6 +6,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 
 from clutchwork.shifts.exchange import Exchange
+from clutchwork.shifts.handover import Handover
 
 NEUTRAL = "N"
 
@@ -50,7 +51,7 @@ class ShiftRecord:
     after: str
     begin: float
     power_on: bool
-    exchanges: tuple[Exchange, ...] = ()
+    exchanges: tuple[Exchange | Handover, ...] = ()
     phases: list[tuple[float, str]] = field(default_factory=list)
     end: float | None = None
     problem: str = ""
@@ -67,5 +68,6 @@ class ShiftRecord:
             return "garage shift"
         up = abs(self.exchanges[-1].after) < abs(self.exchanges[0].before)
         power = "power-on" if self.power_on else "power-off"
-        many = " double" if len(self.exchanges) > 1 else ""
+        first = self.exchanges[0]
+        many = " double" if len(self.exchanges) > 1 or isinstance(first, Handover) and len(first.on) > 1 else ""
         return f"{power}{many} {'upshift' if up else 'downshift'}"

@@ -15,6 +15,8 @@ class ShiftSettings:
         full_pressure: at which elements of a gear that is in are held [Pa]
         torque_time: of the torque phase, in which one element takes over from the other [s]
         inertia_time: of the inertia phase, in which the speed of the input changes [s]
+        usual_step: change of that speed up to which this holds [rad/s]; larger ones take longer in proportion
+        stretch: most factor by which it takes longer, for a larger step or where the torque at hand is too little
         end_time: in which the element that closed is raised to full pressure [s]
         margin: capacity of an element that still holds, over the torque that it carries
         reduction: share by which the engine is asked to lower its torque in the inertia phase of an upshift under power
@@ -38,6 +40,8 @@ class ShiftSettings:
     full_pressure: float = 1.0e6
     torque_time: float = 0.15
     inertia_time: float = 0.35
+    usual_step: float = 150.0
+    stretch: float = 2.0
     end_time: float = 0.1
     margin: float = 1.3
     reduction: float = 0.3
