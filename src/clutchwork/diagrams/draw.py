@@ -63,7 +63,8 @@ def diagram(
             "cw.diagram", [f"{box.name} has no lever: its sets are locked in themselves; choose stick or chart"]
         )
     if kind == "chart" and now is None and not box.states():
-        raise UseError("cw.diagram", [f"{box.name} has no gears to chart; give closed elements as gear, or choose speeds"])
+        remedy = "give closed elements as gear, or choose speeds"
+        raise UseError("cw.diagram", [f"{box.name} has no gears to chart; {remedy}"])
     made = Diagram(kind, title, _marks(box, kind, now, merged))
     if path is not None:
         made.save(path)

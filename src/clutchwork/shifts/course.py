@@ -153,7 +153,7 @@ class ExchangeSequence:
     def _takes_over(self, now: Measured) -> bool:
         """Upshifts under power and downshifts without: the one that closes can take over before speeds change."""
         one, torque = self.one, now.input_torque
-        if not self.do.slides(one.on) or not self.do.carries(one.off, one.off_torque * torque):
+        if one.idle or not self.do.slides(one.on) or not self.do.carries(one.off, one.off_torque * torque):
             return False
         return (torque >= 0.0) == (self._profile.lacks(now) <= 0.0)
 
@@ -170,7 +170,7 @@ class ExchangeSequence:
 
     def _is_synchronous(self, now: Measured) -> bool:
         one, do = self.one, self.do
-        if not one.on:
+        if not one.on or one.idle:
             return True
         if do.is_dog(one.on):
             return now.sleeves.get(one.on, 0.0) > ENGAGED

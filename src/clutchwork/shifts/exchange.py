@@ -38,6 +38,11 @@ class Exchange:
     after: float
     inertia: float  # kg m2, of all members at the input with the output at rest, both elements open
 
+    @property
+    def idle(self) -> bool:
+        """Whether both gears are one: what opens and what closes carries nothing, and no speed waits for it."""
+        return bool(self.off) and self.before == self.after
+
 
 def exchanges(
     box: Gearbox, before: tuple[str, ...], after: tuple[str, ...], inertias: Mapping[str, float]

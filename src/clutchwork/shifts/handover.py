@@ -106,9 +106,7 @@ def handover(
     )
 
 
-def _motion(
-    box: Gearbox, on: Sequence[str], kept: Sequence[str]
-) -> tuple[dict[str, Array], dict[str, float]] | None:
+def _motion(box: Gearbox, on: Sequence[str], kept: Sequence[str]) -> tuple[dict[str, Array], dict[str, float]] | None:
     """Speed of each member per slip of those that close, and per speed of the output without any of these slips."""
     rows = speeds(box, kept)
     columns = sorted({column for row in rows.values() for column in row})
@@ -125,23 +123,32 @@ def _motion(
     return {name: row[1:] for name, row in found.items()}, {name: float(row[0]) for name, row in found.items()}
 
 
-def is_straight(box: Gearbox, one: Handover, torque: float) -> bool:
+def is_straight(
+    box: Gearbox, one: Handover, torque: float, begin: tuple[float, Mapping[str, float]] | None = None
+) -> bool:
     """Whether elements that slip can carry the input's torque [N m] on the way, and about as one of both gears does.
 
     Those that carry make a gear with those that stay closed, and the output has its torque: docs/theory/shifts.md (15).
+    Parameters: begin, speed of the input and slips per speed 1 of the output, by default those of the gear before.
     """
-    if len(one.on) == 1:
+    if len(one.on) < 2:
         return True
-    rows, ahead = np.array([one.rates[name] for name in one.off]), np.array([one.offsets[name] for name in one.off])
-    start = np.linalg.lstsq(rows, -ahead, rcond=None)[0].tolist()
-    ends = {**dict(zip(one.on, start, strict=True)), **{name: one.offsets[name] for name in one.off}}
+    now, slips = begin or (one.before, _slips_before(one))
+    ends = {name: slips[name] for name in one.on} | {name: one.offsets[name] for name in one.off}
     pulls = {name: -np.sign(slip) * one.rates[name] for name, slip in ends.items()}
     sign = 1.0 if torque >= 0.0 else -1.0
     found, missed = allocation(-sign * one.input, pulls, {name: abs(slip) for name, slip in ends.items()}, one.inertia)
     carrying = tuple(name for name, value in found.items() if value > MEETS)
-    low, high = sorted((one.before, one.after))
+    low, high = sorted((now, one.after))
     ratio = ratio_of(box, (*one.kept, *carrying))
     return missed <= MEETS and bool(ratio) and max(low - ratio, ratio - high) < BESIDE * high
+
+
+def _slips_before(one: Handover) -> dict[str, float]:
+    """Slips of those that close in the gear before, per speed 1 of the output: those that open have none."""
+    rows = np.array([one.rates[name] for name in one.off])
+    ahead = np.array([one.offsets[name] for name in one.off])
+    return dict(zip(one.on, np.linalg.lstsq(rows, -ahead, rcond=None)[0].tolist(), strict=True))
 
 
 def allocation(

@@ -44,7 +44,8 @@ class ParallelSequence:
     opens: tuple[str, ...] = ()  # what opens at once
     filled: bool = False  # whether those that close were filled in the handover before
     ahead: tuple[str, ...] = ()  # those that close in the handover that follows, if one does
-    rates: Mapping[str, float] = field(default_factory=dict)  # rad/s2, of slips, where a shift goes over into this one
+    over: bool = False  # whether another shift went over into this one
+    rates: Mapping[str, float] = field(default_factory=dict)  # rad/s2, of slips, where one did
     state: str = "fill"
     torque_factor: float = 1.0  # what the engine is asked for
     blip: float = 0.0  # none: no dog clutch waits for the engine
@@ -59,7 +60,7 @@ class ParallelSequence:
     _output: Trend = field(default_factory=Trend)
 
     def __post_init__(self) -> None:
-        self._held = {name: self.do.commands.get(name, 0.0) for name in self.one.off}
+        self._held = {name: self.do.commands.get(name, 0.0) for name in self.one.elements}
 
     def step(self, time: float, period: float, now: Measured) -> str:
         """Do what the state asks for; the state that begins, if one does. "done": the exchange is made."""
@@ -81,8 +82,8 @@ class ParallelSequence:
         do.close(one.kept, with_)
         if not one.on:
             return "sync"
-        if any(abs(now.slips[name]) > with_.sync_slip for name in one.off if self._held[name]):
-            # another shift goes over into this one: nothing holds the input meanwhile
+        if self.over:
+            # nothing holds the input meanwhile
             return "inertia"
         share = 1.0 if self.filled else _share(passed, with_.fill_time)
         for name in one.on:
@@ -124,11 +125,14 @@ class ParallelSequence:
         one = self.one
         for name in self.ahead:
             do.carry(name, 0.0, with_)
+        # a shift that goes over into this one leaves torques that would jump
+        share = _share(passed, with_.end_time) if self.over else 1.0
         for name, torque in self._needed(period, now).items():
             if torque > 0.0 or name in one.on:
                 do.carry(name, torque, with_)
             else:
                 do.open(name)
+            do.commands[name] = share * do.commands[name] + (1.0 - share) * self._held[name]
         change = -float(one.input @ self._start)
         if now.input_torque > 0.0 and change < 0.0:
             self.torque_factor = 1.0 - with_.reduction

@@ -41,7 +41,7 @@ class ShiftRecord:
         after: gear that was asked for
         begin: instant of the command [s]
         power_on: whether the engine drove then
-        exchanges: of elements, one after the other
+        exchanges: of elements, one after the other; a `Handover` has several that open and close together
         phases: instants [s] at which the states of the controller began
         end: instant at which the controller was done [s]; none: the shift is still going on
         problem: why the gear was not reached, empty where it was
@@ -68,6 +68,6 @@ class ShiftRecord:
             return "garage shift"
         up = abs(self.exchanges[-1].after) < abs(self.exchanges[0].before)
         power = "power-on" if self.power_on else "power-off"
-        first = self.exchanges[0]
-        many = " double" if len(self.exchanges) > 1 or isinstance(first, Handover) and len(first.on) > 1 else ""
+        count = sum(len(one.on) if isinstance(one, Handover) else 1 for one in self.exchanges)
+        many = " double" if count > 1 else ""
         return f"{power}{many} {'upshift' if up else 'downshift'}"
