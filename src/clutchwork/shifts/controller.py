@@ -85,6 +85,7 @@ class ShiftController:
         self._choice = GearChoice(self.schedule, self.settings)
         self._do = Actuation(self.box, self.plant, self.prefix)
         self._do.only(self.gear, self.settings)
+        self._do.start()
         self._ended = -self.pause
         if self.gear == NEUTRAL and self.settings.launch_speed and self.schedule is not None:
             self._choice.let_go = next(iter(self.schedule.ratios))
@@ -97,8 +98,7 @@ class ShiftController:
         self._choice.request(gear)
 
     def step(self, time: float, now: Measured) -> dict[str, float]:
-        """Pressures [Pa] and positions of sleeves by signal, those that change alone, at a time [s]."""
-        before = dict(self._do.commands)
+        """Pressures [Pa], currents [A] and positions of sleeves by signal, those that change alone, at a time [s]."""
         period = max(0.0, time - self._called)
         self._called = time
         course = self._course
@@ -113,7 +113,7 @@ class ShiftController:
         if self._course is not None:
             self._go_on(self._course, time, period, now)
         self._seen = (time, now.slips)
-        return self._do.signals(name for name, value in self._do.commands.items() if value != before[name])
+        return self._do.outputs(period)
 
     @property
     def shifting(self) -> bool:
@@ -137,8 +137,8 @@ class ShiftController:
 
     @property
     def commands(self) -> dict[str, float]:
-        """All pressures [Pa] and positions of sleeves by signal, such as for the start of a run."""
-        return self._do.signals(self._do.commands)
+        """All commands by signal, such as for the start of a run."""
+        return dict(self._do.sent)
 
     def _known(self, gear: str) -> None:
         if gear != NEUTRAL and gear not in self.box.gears:

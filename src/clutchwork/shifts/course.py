@@ -33,6 +33,7 @@ class ExchangeSequence:
     torque_factor: float = 1.0  # what the engine is asked for
     blip: float = 0.0  # throttle on top of that of the driver
     _closing: tuple[str, ...] = ()  # elements that close beside `on`
+    _fill_time: float = 0.0  # s
     _loaded: float = 0.0  # N m, at the input where the torque phase began
 
     def __post_init__(self) -> None:
@@ -70,7 +71,8 @@ class ExchangeSequence:
         """The one that closes up to where it touches, the other down to what it carries."""
         one, with_, do = self.one, self.with_, self.do
         takes = not self.filled and (do.slides(one.on) or do.slides(one.off))
-        share = _share(passed, with_.fill_time if takes else 0.0)
+        self._fill_time = self._fill_time or do.fill_time([one.on], with_)
+        share = _share(passed, self._fill_time if takes else 0.0)
         do.carry(one.on, 0.0, with_)
         do.commands.update(dict.fromkeys(self._closing, share * share * with_.full_pressure))
         if do.slides(one.off):

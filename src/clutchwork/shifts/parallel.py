@@ -53,6 +53,7 @@ class ParallelSequence:
     _held: dict[str, float] = field(default_factory=dict)  # Pa, of what opens, at the beginning
     _start: Array = field(default_factory=lambda: np.zeros(0))  # y where the inertia phase begins [rad/s]
     _speed: Array = field(default_factory=lambda: np.zeros(0))  # the same of its rate [rad/s2]
+    _fill_time: float = 0.0  # s
     _time: float = 0.0  # s, of the inertia phase as planned
     _passed: float = 0.0  # s, of that plan
     _costs: dict[str, float] = field(default_factory=dict)  # rad/s
@@ -82,10 +83,11 @@ class ParallelSequence:
         do.close(one.kept, with_)
         if not one.on:
             return "sync"
+        self._fill_time = self._fill_time or do.fill_time(one.on, with_)
         if self.over:
             # nothing holds the input meanwhile
             return "inertia"
-        share = 1.0 if self.filled else _share(passed, with_.fill_time)
+        share = 1.0 if self.filled else _share(passed, self._fill_time)
         for name in one.on:
             do.carry(name, 0.0, with_)
         for name in one.off:
@@ -116,7 +118,7 @@ class ParallelSequence:
         if self._is_synchronous(now):
             self.torque_factor = 1.0
             return "sync"
-        if passed > max(with_.longest, 2.0 * self._time):
+        if passed > with_.longest:
             self.torque_factor = 1.0
             lacks = float(np.linalg.norm(self._y(now)))
             rises = float(one.input @ self._start) < 0.0
@@ -128,10 +130,8 @@ class ParallelSequence:
         # a shift that goes over into this one leaves torques that would jump
         share = _share(passed, with_.end_time) if self.over else 1.0
         for name, torque in self._needed(period, now).items():
-            if torque > 0.0 or name in one.on:
-                do.carry(name, torque, with_)
-            else:
-                do.open(name)
+            # what opens stays filled meanwhile: it may have to hold the input again
+            do.carry(name, torque, with_)
             do.commands[name] = share * do.commands[name] + (1.0 - share) * self._held[name]
         change = -float(one.input @ self._start)
         if now.input_torque > 0.0 and change < 0.0:
