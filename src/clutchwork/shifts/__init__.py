@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from clutchwork.shifts.actuators import ElementActuator
 from clutchwork.shifts.comfort import jerk, vibration_dose
 from clutchwork.shifts.controller import ShiftController
 from clutchwork.shifts.detect import Shift, shifts_of
@@ -9,7 +10,9 @@ from clutchwork.shifts.drive import Sensed, drive
 from clutchwork.shifts.exchange import Exchange, exchanges
 from clutchwork.shifts.fault_results import Fault, FaultResult, FaultTable
 from clutchwork.shifts.faults import fault_table, single_faults
+from clutchwork.shifts.fill_test import fill_test
 from clutchwork.shifts.gears import InGear, gears_of
+from clutchwork.shifts.handover import Handover
 from clutchwork.shifts.metrics import ShiftQuality, qualities
 from clutchwork.shifts.plant import Plant, plant_of
 from clutchwork.shifts.record import Measured, ShiftRecord
@@ -19,10 +22,12 @@ from clutchwork.shifts.settings import ShiftSettings
 from clutchwork.shifts.survey import Survey, Surveyed, neighbours, survey
 
 __all__ = [
+    "ElementActuator",
     "Exchange",
     "Fault",
     "FaultResult",
     "FaultTable",
+    "Handover",
     "InGear",
     "Measured",
     "Plant",
@@ -38,6 +43,7 @@ __all__ = [
     "drive",
     "exchanges",
     "fault_table",
+    "fill_test",
     "gears_of",
     "jerk",
     "neighbours",

@@ -25,7 +25,6 @@ class ActuatorDriver:
 
     of: ElementActuator
     fill_time: float  # s, as it was learnt
-    offset: float = 0.0  # N m, by which the torque is too low, as it was learnt
     level: float = 0.0  # of the filling, 0 to 1
     torque: float = 0.0  # N m, as it should be at present
     _fills: float = 0.0  # rate of the filling that was commanded, over that of the full command
@@ -44,7 +43,7 @@ class ActuatorDriver:
             return of.commands[0]
         if self.level < 1.0 - FULL:
             return self._fill(period)
-        self._asked = self._lead(torque + self.offset if torque > 0.0 else 0.0, period)
+        self._asked = self._lead(torque, period)
         return of.command(max(TOUCH * of.most, self._asked))
 
     def _pass(self, passed: float) -> None:

@@ -101,7 +101,7 @@ class _Test:
         for name, column in zip(self.names, torques.T, strict=True):
             commands = tuple(self._at(name, share) for share in shares)
             made[name] = ElementActuator(
-                self.ends[name][0], commands, tuple(column), 0.0, self._kiss(name, shares, column), 0.0
+                self.ends[name][0], commands, tuple(column.tolist()), 0.0, self._kiss(name, shares, column), 0.0
             )
         times = self._fill_times(made)
         lags = self._lags(made, times)
@@ -121,7 +121,7 @@ class _Test:
         return np.asarray(self.sim[self.capacities]) * self.sliding
 
     def _stair(self) -> tuple[Any, Any]:
-        shares, rows = np.linspace(0.0, 1.0, STEPS + 1), []
+        shares, rows = np.linspace(0.0, 1.0, STEPS + 1).tolist(), []
         # downward, for on the way up a piston fills slowly at low commands
         for share in shares[::-1]:
             self._set({name: self._at(name, float(share)) for name in self.names})

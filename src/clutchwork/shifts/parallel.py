@@ -49,7 +49,10 @@ class ParallelSequence:
     state: str = "fill"
     torque_factor: float = 1.0  # what the engine is asked for
     blip: float = 0.0  # none: no dog clutch waits for the engine
-    wishes: str = ""  # why it failed
+    late: float = 0.0  # s, for which those that close were waited for in the torque phase
+    jolt: float = 0.0  # rad/s, largest second difference of the speed of the output while they were filled
+    takes: tuple[str, ...] = ()  # those that took the torque over
+    _outputs: tuple[float, ...] = ()  # rad/s
     _held: dict[str, float] = field(default_factory=dict)  # Pa, of what opens, at the beginning
     _start: Array = field(default_factory=lambda: np.zeros(0))  # y where the inertia phase begins [rad/s]
     _speed: Array = field(default_factory=lambda: np.zeros(0))  # the same of its rate [rad/s2]
@@ -88,6 +91,7 @@ class ParallelSequence:
             # nothing holds the input meanwhile
             return "inertia"
         share = 1.0 if self.filled else _share(passed, self._fill_time)
+        self._watch_fill(now)
         for name in one.on:
             do.carry(name, 0.0, with_)
         for name in one.off:
@@ -96,12 +100,23 @@ class ParallelSequence:
         if share < 1.0:
             return ""
         taken = self._still(now)
+        self.takes = tuple(name for name in one.on if abs(taken[name]) > NOTHING * abs(now.input_torque))
         return "torque" if any(abs(taken[name]) > NOTHING * abs(now.input_torque) for name in one.on) else "inertia"
 
-    def torque(self, passed: float, _: float, now: Measured) -> str:
+    def torque(self, passed: float, period: float, now: Measured) -> str:
         """From the torques of the gear before to those that begin the inertia phase: equation (14)."""
         one, with_, do = self.one, self.with_, self.do
-        share, taken = _share(passed, with_.torque_time), self._still(now)
+        if self._runs_away(now):
+            # those that close are late: they go on until they grip, and the others go on holding
+            self.late += period
+            for name, torque in self._still(now).items():
+                if name in one.on:
+                    do.carry(name, passed / max(with_.torque_time, 1e-9) * torque, with_)
+            for name in one.off:
+                do.carry(name, with_.margin**2 * abs(one.off_torques[name] * now.input_torque), with_)
+            if passed < with_.longest:
+                return ""
+        share, taken = _share(passed - self.late, with_.torque_time), self._still(now)
         for name in one.on:
             do.carry(name, share * taken[name], with_)
         for name in one.off:
@@ -111,6 +126,13 @@ class ParallelSequence:
         if share < 1.0 and all(abs(now.slips[name]) <= with_.sync_slip for name in one.off):
             return ""
         return "inertia"
+
+    def _runs_away(self, now: Measured) -> bool:
+        """Whether an element that opens slips away from the new gear: too little holds the input."""
+        slips = ((now.slips[name], self.one.offsets[name] * now.output_speed) for name in self.one.off)
+        return len(self.one.off) == 1 and any(
+            slip * ahead < 0.0 and abs(slip) > self.with_.sync_slip for slip, ahead in slips
+        )
 
     def inertia(self, passed: float, period: float, now: Measured) -> str:
         """All slips along their profiles at once, by those elements that pull the right way: equations (15), (16)."""
@@ -183,6 +205,13 @@ class ParallelSequence:
         self._start, self._speed, self._integral = (part[chosen] for part in (self._start, self._speed, self._integral))
         self.one = left
         self.do.close(there, self.with_)
+
+    def _watch_fill(self, now: Measured) -> None:
+        """A piston that is filled too long grips with a jolt, which the output shows."""
+        self._outputs = (*self._outputs[-2:], now.output_speed)
+        if len(self._outputs) > 2:
+            first, middle, last = self._outputs
+            self.jolt = max(self.jolt, abs(last - 2.0 * middle + first))
 
     def _y(self, now: Measured) -> Array:
         return np.array([now.slips[name] for name in self.one.on])

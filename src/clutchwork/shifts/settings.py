@@ -28,6 +28,7 @@ class ShiftSettings:
         dog_slip: slip below which a dog clutch is commanded to engage, below the one at which its teeth mesh [rad/s]
         blip: most throttle that the engine is asked for where nothing else can bring the input to the speed of a dog
         clutch, or unload one that opens, 0 to 1
+        adaptation: share of what a shift showed of the filling that is learnt for the next one, 0: nothing is
         longest: after which an exchange is closed whatever the slip [s]
         launch_speed: that the input keeps while an element drives off, where no converter does [rad/s]; 0: there is one
         launch_gain: proportional gain of that [1/s], far below the slowest mode of the drive shafts
@@ -52,6 +53,7 @@ class ShiftSettings:
     sync_slip: float = 1.0
     dog_slip: float = 4.0
     blip: float = 0.4
+    adaptation: float = 1.0
     longest: float = 2.5
     launch_speed: float = 0.0
     launch_gain: float = 4.0
