@@ -19,6 +19,7 @@ from clutchwork.shifts.record import Measured, ShiftRecord
 from clutchwork.shifts.report import overview, picture, table
 from clutchwork.shifts.schedule import ShiftSchedule
 from clutchwork.shifts.settings import ShiftSettings
+from clutchwork.shifts.shift_map import Inhibit, ShiftMap
 from clutchwork.shifts.survey import Survey, Surveyed, neighbours, survey
 
 __all__ = [
@@ -29,11 +30,13 @@ __all__ = [
     "FaultTable",
     "Handover",
     "InGear",
+    "Inhibit",
     "Measured",
     "Plant",
     "Sensed",
     "Shift",
     "ShiftController",
+    "ShiftMap",
     "ShiftQuality",
     "ShiftRecord",
     "ShiftSchedule",

@@ -24,6 +24,7 @@ from clutchwork.shifts.settings import ShiftSettings
 if TYPE_CHECKING:
     from clutchwork.gearbox.gearbox import Gearbox
     from clutchwork.shifts.schedule import ShiftSchedule
+    from clutchwork.shifts.shift_map import ShiftMap
 
 Course = ExchangeSequence | ParallelSequence
 
@@ -55,7 +56,7 @@ class ShiftController:
     Parameters:
         box: the gearbox
         plant: capacities and inertias of the elements and members, from `cw.shifts.plant_of`
-        schedule: when to shift; none: when `request` asks for a gear
+        schedule: when to shift, a `ShiftSchedule` or a `ShiftMap`; none: when `request` asks for a gear
         settings: calibration
         chosen: calibration of single shifts, ("3", "4") or a kind such as "power-off upshift"
         gear: the gear that is in at the start; "N": none
@@ -68,7 +69,7 @@ class ShiftController:
 
     box: Gearbox
     plant: Plant
-    schedule: ShiftSchedule | None = None
+    schedule: ShiftSchedule | ShiftMap | None = None
     settings: ShiftSettings = field(default_factory=ShiftSettings)
     chosen: Mapping[tuple[str, str] | str, ShiftSettings] = field(default_factory=dict)
     gear: str = NEUTRAL

@@ -22,6 +22,8 @@ class Measured:
         throttle: of the driver, 0 to 1
         slips: of elements [rad/s], those of a shift that goes on at least
         sleeves: position of dog clutches, 0 out, 1 in
+        oil: temperature of the oil [K], for the inhibits of a `ShiftMap`
+        grade: of the road, above 0 uphill [rad], for the same
     """
 
     input_speed: float
@@ -30,6 +32,8 @@ class Measured:
     throttle: float
     slips: Mapping[str, float]
     sleeves: Mapping[str, float] = field(default_factory=dict)
+    oil: float = 353.15
+    grade: float = 0.0
 
 
 @dataclass
