@@ -6,6 +6,7 @@ from clutchwork.shifts.actuators import ElementActuator
 from clutchwork.shifts.comfort import jerk, vibration_dose
 from clutchwork.shifts.controller import ShiftController
 from clutchwork.shifts.detect import Shift, shifts_of
+from clutchwork.shifts.diagnosis import diagnose
 from clutchwork.shifts.drive import Sensed, drive
 from clutchwork.shifts.exchange import Exchange, exchanges
 from clutchwork.shifts.fault_results import Fault, FaultResult, FaultTable
@@ -15,7 +16,7 @@ from clutchwork.shifts.gears import InGear, gears_of
 from clutchwork.shifts.handover import Handover
 from clutchwork.shifts.metrics import ShiftQuality, qualities
 from clutchwork.shifts.plant import Plant, plant_of
-from clutchwork.shifts.record import Measured, ShiftRecord
+from clutchwork.shifts.record import Finding, Measured, ShiftRecord
 from clutchwork.shifts.report import overview, picture, table
 from clutchwork.shifts.schedule import ShiftSchedule
 from clutchwork.shifts.settings import ShiftSettings
@@ -28,6 +29,7 @@ __all__ = [
     "Fault",
     "FaultResult",
     "FaultTable",
+    "Finding",
     "Handover",
     "InGear",
     "Inhibit",
@@ -43,6 +45,7 @@ __all__ = [
     "ShiftSettings",
     "Survey",
     "Surveyed",
+    "diagnose",
     "drive",
     "exchanges",
     "fault_table",

@@ -4,13 +4,11 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
+from clutchwork.shifts.parallel import JOLT, USUAL
+
 if TYPE_CHECKING:
     from clutchwork.shifts.parallel import ParallelSequence
 
-# second difference of the speed of the output from which on it is a jolt of a piston [rad/s]
-JOLT = 0.25
-# for which the torque phase may wait without a reason [s]
-USUAL = 0.015
 # change of the fill time per jolt [s/rad], per share of it that an element was late, and at most
 PER_JOLT, PER_LATE, MOST = 0.04, 0.3, 0.08
 

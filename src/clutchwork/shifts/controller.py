@@ -201,6 +201,7 @@ class ShiftController:
         elif new == "done":
             if isinstance(course, ParallelSequence):
                 adapt(course)
+                self.records[-1].diagnosis += course.findings()
             self._left.pop(0)
             if self._left:
                 self._begin(time)

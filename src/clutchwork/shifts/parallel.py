@@ -11,6 +11,7 @@ import numpy as np
 
 from clutchwork.shifts.handover import Array, allocation
 from clutchwork.shifts.profile import Trend
+from clutchwork.shifts.record import Finding
 
 if TYPE_CHECKING:
     from clutchwork.shifts.actuation import Actuation
@@ -28,6 +29,10 @@ CLOSED_ANYHOW = 0.2
 ASTRAY = 20.0
 # what a torque of those counts for that close where the others hold the input, or the other way round
 LAST = 3.0
+# second difference of the speed of the output from which on it is a jolt of a piston [rad/s]
+JOLT = 0.25
+# for which the torque phase may wait without a reason [s]
+USUAL = 0.015
 # torque of an element that counts as none, as a share of that of the input
 NOTHING = 1e-3
 
@@ -51,6 +56,9 @@ class ParallelSequence:
     blip: float = 0.0  # none: no dog clutch waits for the engine
     late: float = 0.0  # s, for which those that close were waited for in the torque phase
     jolt: float = 0.0  # rad/s, largest second difference of the speed of the output while they were filled
+    left: float = 0.0  # rad/s, slip with which it was closed
+    instants: dict[str, float] = field(default_factory=dict)  # s
+    _now: float = 0.0  # s
     takes: tuple[str, ...] = ()  # those that took the torque over
     _outputs: tuple[float, ...] = ()  # rad/s
     _held: dict[str, float] = field(default_factory=dict)  # Pa, of what opens, at the beginning
@@ -68,6 +76,7 @@ class ParallelSequence:
 
     def step(self, time: float, period: float, now: Measured) -> str:
         """Do what the state asks for; the state that begins, if one does. "done": the exchange is made."""
+        self._now = time
         new: str = getattr(self, self.state)(time - self.since, period, now)
         if new:
             self.state, self.since = new, time
@@ -109,6 +118,7 @@ class ParallelSequence:
         if self._runs_away(now):
             # those that close are late: they go on until they grip, and the others go on holding
             self.late += period
+            self.instants.setdefault("late", self._now)
             for name, torque in self._still(now).items():
                 if name in one.on:
                     do.carry(name, passed / max(with_.torque_time, 1e-9) * torque, with_)
@@ -143,6 +153,7 @@ class ParallelSequence:
         if passed > with_.longest:
             self.torque_factor = 1.0
             lacks = float(np.linalg.norm(self._y(now)))
+            self.left, self.instants["closed"] = lacks, self._now
             rises = float(one.input @ self._start) < 0.0
             return "failed" if rises and lacks > CLOSED_ANYHOW * float(np.linalg.norm(self._start)) else "sync"
         self._lock_early(now)
@@ -189,6 +200,22 @@ class ParallelSequence:
         closed = all(abs(now.slips[name]) < with_.sync_slip for name in one.on)
         return "done" if closed or passed > with_.longest else ""
 
+    def findings(self) -> tuple[Finding, ...]:
+        """What was wrong on the way, with the setting that cures it."""
+        names, made = "+".join(self.one.on), list[Finding]()
+        if self.jolt > JOLT:
+            cause = f"{names} gripped with a jolt of {self.jolt:.2g} rad/s while filled"
+            made.append(Finding(self.instants.get("jolt", 0.0), cause, "fill_time of the actuator down"))
+        if self.late > USUAL:
+            cause = f"{names} gripped {1e3 * self.late:.0f} ms late: the input ran away"
+            made.append(Finding(self.instants.get("late", 0.0), cause, "fill_time up"))
+        if "closed" in self.instants:
+            cause = f"closed with {self.left:.0f} rad/s of slip after `longest`"
+            made.append(
+                Finding(self.instants["closed"], cause, "longest up, inertia_time up, or more torque of the engine")
+            )
+        return tuple(made)
+
     # --------------------------------------------------------------------------------------------------- what holds
 
     def _lock_early(self, now: Measured) -> None:
@@ -211,7 +238,9 @@ class ParallelSequence:
         self._outputs = (*self._outputs[-2:], now.output_speed)
         if len(self._outputs) > 2:
             first, middle, last = self._outputs
-            self.jolt = max(self.jolt, abs(last - 2.0 * middle + first))
+            jolt = abs(last - 2.0 * middle + first)
+            if jolt > self.jolt:
+                self.jolt, self.instants["jolt"] = jolt, self._now
 
     def _y(self, now: Measured) -> Array:
         return np.array([now.slips[name] for name in self.one.on])

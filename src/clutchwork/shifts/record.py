@@ -36,6 +36,18 @@ class Measured:
     grade: float = 0.0
 
 
+@dataclass(frozen=True)
+class Finding:
+    """Why a shift was harsh: the instant [s], the cause in words and numbers, the settings that cure it."""
+
+    time: float
+    cause: str
+    cure: str
+
+    def __str__(self) -> str:
+        return f"{self.time:.3f} s: {self.cause}; {self.cure}"
+
+
 @dataclass
 class ShiftRecord:
     """One shift as it was commanded.
@@ -49,6 +61,8 @@ class ShiftRecord:
         phases: instants [s] at which the states of the controller began
         end: instant at which the controller was done [s]; none: the shift is still going on
         problem: why the gear was not reached, empty where it was
+        diagnosis: why it was harsh, as its controller saw it: elements that gripped too late or too early, a shift that
+        was closed with slip; `cw.shifts.diagnose` sees more in a run
     """
 
     before: str
@@ -59,6 +73,7 @@ class ShiftRecord:
     phases: list[tuple[float, str]] = field(default_factory=list)
     end: float | None = None
     problem: str = ""
+    diagnosis: tuple[Finding, ...] = ()
 
     @property
     def reached(self) -> bool:
