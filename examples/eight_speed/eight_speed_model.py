@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
+from typing import Any
+
 import clutchwork as cw
 
 RADIUS = 0.33  # m
@@ -26,8 +29,14 @@ CAPACITY = (7.0e-3, 6.8e-3, 6.5e-3, 5.9e-3, 5.3e-3, 4.4e-3, 3.8e-3, 2.9e-3, 1.7e
 TURBINE = ("converter.turbine.torque", "lock_up.torque")
 
 
-def car(box: cw.Gearbox, gear: str, speed: float = 0.0, throttle: float = 0.0) -> cw.Driveline:
-    """The car in a gear at a speed [m/s], its lock-up clutch open."""
+def car(
+    box: cw.Gearbox,
+    gear: str,
+    speed: float = 0.0,
+    throttle: float = 0.0,
+    shift: Mapping[str, Mapping[str, Any]] | None = None,
+) -> cw.Driveline:
+    """The car in a gear at a speed [m/s], its lock-up clutch open; shift, fields of shift elements by name."""
     d = cw.Driveline(f"car with {box.title or box.name}")
     turning = speed / RADIUS * FINAL_DRIVE
     # in neutral the turbine goes with the engine
@@ -37,7 +46,8 @@ def car(box: cw.Gearbox, gear: str, speed: float = 0.0, throttle: float = 0.0) -
     shaft = d.shaft("turbine", inertia=0.06, speed=turbine)
     output = d.shaft("output", inertia=0.02, speed=None if ratio else turning)
     _engine(d, engine, shaft, throttle)
-    d.add(cw.Transmission("gearbox", gearbox=box, input=shaft, output=output, inertia=0.008, torque=RATED, gear=gear))
+    ends = {"gearbox": box, "input": shaft, "output": output, "gear": gear}
+    d.add(cw.Transmission("gearbox", **ends, inertia=0.008, torque=RATED, shift=shift))
     _axle(d, output, speed)
     return d
 

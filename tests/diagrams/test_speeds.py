@@ -9,6 +9,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+import clutchwork as cw
 from clutchwork.diagrams.marks import Label, Polyline
 from clutchwork.diagrams.picture import svg_text
 from clutchwork.diagrams.speed import chart, plan
@@ -70,3 +71,34 @@ def test_labels_are_apart_and_as_near_as_may_be(wanted: list[float]) -> None:
     assert all(found[b] - found[a] >= 5.0 - 1e-9 for a, b in pairwise(order))
     # the mean of what had to move is kept, so all together it is
     assert sum(found) == pytest.approx(sum(wanted), abs=1e-6)
+
+
+def test_a_box_without_gears_and_closed_elements_without_a_name() -> None:
+    """A power split has its ladder; a chart wants something closed; what is no row of the table is drawn beside it."""
+    split = cw.Gearbox.from_dict(
+        {
+            "name": "split",
+            "input": "engine",
+            "output": "ring",
+            "gears": {},
+            "sets": {
+                "P": {
+                    "type": "single",
+                    "sun": "MG1",
+                    "ring": "ring",
+                    "carrier": "engine",
+                    "teeth_sun": 30,
+                    "teeth_ring": 78,
+                }
+            },
+        }
+    )
+    assert "MG1" in cw.diagram(split, "speeds").svg
+    with pytest.raises(cw.UseError, match="split has no gears to chart"):
+        cw.diagram(split, "chart")
+    data = cw.Gearbox.load("zf-8hp70").to_dict()
+    data["gears"] = {gear: row for gear, row in data["gears"].items() if gear != "3"}
+    data["published"] = {gear: ratio for gear, ratio in data["published"].items() if gear != "3"}
+    box = cw.Gearbox.from_dict(data)
+    for kind in ("speeds", "chart"):
+        assert ">B+C+E<" in cw.diagram(box, kind, gear=("B", "C", "E")).svg

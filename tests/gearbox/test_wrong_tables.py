@@ -22,6 +22,8 @@ WRONG: dict[str, tuple[dict[str, Any], tuple[str, ...]]] = {
     "input held": ({"gears__3": ["A", "C", "E"]}, ('gear "3"', "holds the input in")),
     "unknown element": ({"gears__3": ["B", "C", "F"]}, ('gear "3"', "'F'", "known elements: A, B, C, D, E")),
     "misspelt member": ({"elements__A": ["S13", "housing"]}, ('element "A"', "did you mean 'S12'")),
+    # it makes every gear wrong; the first line names the likely typo
+    "misspelt once": ({"sets__P4__ring": "outt"}, ("1 more", "ring is 'outt', which nothing else")),
     "brake on nothing": ({"elements__A": ["C1R4", "out"], "sets__P1__sun": "S1"}, ('gear "',)),
     "same row twice": ({"gears__9": ["D", "A", "E"]}, ('gear "9"', 'the same as gear "8"')),
     "element twice": ({"gears__3": ["B", "B", "E"]}, ('gear "3"', "names B twice")),

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import sys
 from copy import deepcopy
 from math import isnan
 from pathlib import Path
@@ -13,6 +14,7 @@ from clutchwork.shifts import faults
 from support.shift_car import car
 from support.transmissions import AODE
 
+EXAMPLE = Path(__file__).parents[2] / "examples" / "eight_speed"
 EIGHT = cw.Gearbox.load("zf-8hp70")
 NINE = cw.Gearbox.load("zf-9hp48")
 
@@ -84,6 +86,26 @@ def test_elements_without_pressure() -> None:
     # in second gear the freewheel would have to overrun
     assert free["free", "stuck closed"].verdict == "decelerates"
     assert free["forward", "missing"].verdict == "drive lost"
+
+
+def test_an_output_that_stands_is_locked_and_an_idle_element_is_not_missed() -> None:
+    """The wheels slide while the car goes on; two elements alone hold fourth gear of the nine-speed."""
+    sys.path.insert(0, str(EXAMPLE))
+    import eight_speed_model as model
+
+    def verdict(box: cw.Gearbox, gear: str, element: str) -> cw.shifts.FaultResult:
+        speed = 150.0 / box.ratios[gear] / model.FINAL_DRIVE * model.RADIUS
+        found = cw.shifts.fault_table(
+            lambda gear: model.car(box, gear, speed, throttle=0.3), box, vehicle="car", gears=(gear,), rtol=1e-6
+        )
+        return next(one for one in found if one.fault.element == element)
+
+    locked = verdict(EIGHT, "8", "B")
+    assert (locked.verdict, locked.fault.fault) == ("locks the output", "stuck closed")
+    # it slides to rest over a long way
+    assert locked.speed > 15.0
+    idle = verdict(cw.Gearbox.load("mb-9g-v1"), "4", "F")
+    assert (idle.verdict, idle.fault.makes, idle.ends_in, idle.burns) == ("none", "gear", "4", "")
 
 
 def test_tables_are_written(tmp_path: Path) -> None:

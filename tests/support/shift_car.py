@@ -58,6 +58,33 @@ def rigid(box: cw.Gearbox, gear: str, engine: float = IDLE, **transmission: Any)
     return d
 
 
+def hydraulic(box: cw.Gearbox, gear: str, turbine: float = SPEED, *, pistons: bool = False) -> cw.Driveline:
+    """The car whose elements are pressed by a valve and a piston each, or by a `PressureActuator`."""
+    most = {name: max(one.torque, 0.1) * 900.0 for name, one in box.capacities().items()}
+    closed, shift, parts = box.closed_in(gear), dict[str, dict[str, Any]](), list[Any]()
+    for name in (element.name for element in box.elements):
+        on = name in closed
+        if pistons:
+            filled = {"filled": on, "initial_pressure": 1e6 if on else 0.0}
+            values = {"lag": 0.03, "fill_time": 0.1, "fill_pressure": 5e5, "spring": 5e4, **filled}
+            parts.append(cw.PressureActuator(f"{name}_piston", command=1.05e6 if on else 0.0, **values))
+            shift[name] = {"pressure": parts[-1]}
+            continue
+        table = ((0.0, 0.0), (0.1, 0.0), (1.0, 1e6))
+        start = {"current": float(on), "initial_pressure": 1e6 if on else 0.0}
+        valve = cw.PressureValve(f"{name}_valve", pressure=table, lag=0.015, **start)
+        springs = {"preload": 300.0, "spring_rate": 1e5, "kiss_stroke": 2e-3, "contact_rate": 1e7}
+        areas = {"orifice_area": 2.5e-6, "piston_area": 6e-3, "initial_stroke": 2.53e-3 if on else 0.0}
+        piston = cw.ClutchActuator(f"{name}_piston", supply_pressure=valve, **springs, **areas)
+        parts += [valve, piston]
+        # the piston has 5.4 kN at 1 MPa
+        shift[name] = {"normal_force": piston, "gain": most[name] / 0.13 / 5400.0}
+    d = car(box, gear, turbine, shift=shift)
+    for part in parts:
+        d.add(part)
+    return d
+
+
 def _axle(d: cw.Driveline, output: Any, turning: float) -> None:
     """Final drive, half shafts, wheels that roll, brakes and road."""
     axle = d.shaft("axle", inertia=0.08)

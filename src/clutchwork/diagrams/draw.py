@@ -62,6 +62,9 @@ def diagram(
         raise UseError(
             "cw.diagram", [f"{box.name} has no lever: its sets are locked in themselves; choose stick or chart"]
         )
+    if kind == "chart" and now is None and not box.states():
+        remedy = "give closed elements as gear, or choose speeds"
+        raise UseError("cw.diagram", [f"{box.name} has no gears to chart; {remedy}"])
     made = Diagram(kind, title, _marks(box, kind, now, merged))
     if path is not None:
         made.save(path)
@@ -89,6 +92,8 @@ def _marks(box: Gearbox, kind: str, now: GearState | None, merged: bool) -> list
     if kind == "stick":
         return stick.painted(box, stick_layout(box), now)
     states = list(box.states().values())
+    # closed elements that are no row of the table are shown beside its gears
+    states += [now] if now is not None and all(now.closed != one.closed for one in states) else []
     if kind in LEVERS:
         box = replace(box, sets=tuple(filter(_has_lever, box.sets)))
     if kind == "lever":

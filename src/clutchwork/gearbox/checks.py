@@ -30,7 +30,23 @@ def problems(box: Definition) -> list[Problem]:
     if not found:
         found += [problem for gear in box.gears for problem in _gear_problems(box, gear)]
         found += _published_problems(box)
+        # a typo in one name shows up as a fault of many gears
+        found = [*(_likely_typos(box) if found else ()), *found]
     return found
+
+
+def _likely_typos(box: Definition) -> Iterator[Problem]:
+    """Members of sets that occur once and look like another one, in a box whose gears are wrong."""
+    ports = [(one.name, port, member) for one in box.sets for port, member in one.members.items()]
+    named = [*(member for *_, member in ports), *(member for e in box.elements for member in e.members)]
+    known = [member for member in dict.fromkeys([box.input, box.output, *named]) if member != HOUSING]
+    ends = (box.input, box.output, *box.shafts, HOUSING)
+    for name, port, member in ports:
+        if named.count(member) == 1 and member not in ends:
+            meant = near(member, [other for other in known if other != member])
+            if meant:
+                fault = f"is {quote(member)}, which nothing else is joined to{meant}"
+                yield Problem(f'set "{name}"', port, fault, remedy="correct the name, or rename the member")
 
 
 def _name_problems(box: Definition) -> Iterator[Problem]:

@@ -2,42 +2,54 @@
 
 from __future__ import annotations
 
+from clutchwork.shifts.actuators import ElementActuator
 from clutchwork.shifts.comfort import jerk, vibration_dose
 from clutchwork.shifts.controller import ShiftController
 from clutchwork.shifts.detect import Shift, shifts_of
+from clutchwork.shifts.diagnosis import diagnose
 from clutchwork.shifts.drive import Sensed, drive
 from clutchwork.shifts.exchange import Exchange, exchanges
 from clutchwork.shifts.fault_results import Fault, FaultResult, FaultTable
 from clutchwork.shifts.faults import fault_table, single_faults
+from clutchwork.shifts.fill_test import fill_test
 from clutchwork.shifts.gears import InGear, gears_of
+from clutchwork.shifts.handover import Handover
 from clutchwork.shifts.metrics import ShiftQuality, qualities
 from clutchwork.shifts.plant import Plant, plant_of
-from clutchwork.shifts.record import Measured, ShiftRecord
+from clutchwork.shifts.record import Finding, Measured, ShiftRecord
 from clutchwork.shifts.report import overview, picture, table
 from clutchwork.shifts.schedule import ShiftSchedule
 from clutchwork.shifts.settings import ShiftSettings
+from clutchwork.shifts.shift_map import Inhibit, ShiftMap
 from clutchwork.shifts.survey import Survey, Surveyed, neighbours, survey
 
 __all__ = [
+    "ElementActuator",
     "Exchange",
     "Fault",
     "FaultResult",
     "FaultTable",
+    "Finding",
+    "Handover",
     "InGear",
+    "Inhibit",
     "Measured",
     "Plant",
     "Sensed",
     "Shift",
     "ShiftController",
+    "ShiftMap",
     "ShiftQuality",
     "ShiftRecord",
     "ShiftSchedule",
     "ShiftSettings",
     "Survey",
     "Surveyed",
+    "diagnose",
     "drive",
     "exchanges",
     "fault_table",
+    "fill_test",
     "gears_of",
     "jerk",
     "neighbours",

@@ -7,6 +7,7 @@ from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
 from clutchwork.base.quote import listed
+from clutchwork.shifts.driver import ActuatorDriver
 from clutchwork.shifts.exchange import FRICTION
 
 if TYPE_CHECKING:
@@ -15,13 +16,20 @@ if TYPE_CHECKING:
     from clutchwork.shifts.record import Measured
     from clutchwork.shifts.settings import ShiftSettings
 
+# time between two calls, where none was seen yet [s]
+PERIOD = 0.01
+# lags for which an element that was filled is waited for
+SETTLE = 2.0
 # a sleeve that is further in is taken as engaged
 ENGAGED = 0.9
 
 
 @dataclass
 class Actuation:
-    """The commands that hold at present, by element; freewheels have none and are passed over."""
+    """The commands that hold at present, by element; freewheels have none and are passed over.
+
+    Pressures of elements behind valves and pistons stand for torques, of which `outputs` makes commands.
+    """
 
     box: Gearbox
     plant: Plant
@@ -34,6 +42,10 @@ class Actuation:
         self._signals = {
             name: f"{self.prefix}.{name}.{ends[kind]}" for name, kind in self.kinds.items() if kind in ends
         }
+        self._signals |= {name: one.signal for name, one in self.plant.actuators.items()}
+        self.drivers = {name: ActuatorDriver(one, one.fill_time) for name, one in self.plant.actuators.items()}
+        self.sent: dict[str, float] = {}
+        self.period = PERIOD
 
     def slides(self, name: str) -> bool:
         """Whether it is there and can be made to slip with a torque."""
@@ -70,6 +82,12 @@ class Actuation:
         out = [name for name in closed if self.is_dog(name) and now.sleeves.get(name, 1.0) < ENGAGED]
         return "; ".join(f"{listed(names)} {fault}" for names, fault in ((slips, "slips"), (out, "is out")) if names)
 
+    def holds(self, name: str, now: Measured, with_: ShiftSettings) -> bool:
+        """Whether an element is closed and does not slip."""
+        if self.is_dog(name):
+            return now.sleeves.get(name, 0.0) > ENGAGED
+        return self.commands.get(name, 0.0) > 0.0 and abs(now.slips[name]) < with_.sync_slip
+
     def open(self, *names: str) -> None:
         """Take all pressure away, or pull the sleeve out."""
         self.commands.update({name: 0.0 for name in names if name in self._signals})
@@ -89,6 +107,32 @@ class Actuation:
         touch = max(with_.fill_pressure, self.plant.touch[name])
         return min(with_.full_pressure, touch + torque / self.plant.capacity[name])
 
-    def signals(self, names: Iterable[str]) -> dict[str, float]:
-        """Commands of some elements by signal."""
-        return {self._signals[name]: self.commands[name] for name in names}
+    def fill_time(self, names: Iterable[str], with_: ShiftSettings) -> float:
+        """For which elements are filled [s]: until the slowest of them touches, and its lag is over."""
+        drivers = [self.drivers[name] for name in names if name in self.drivers]
+        return max([with_.fill_time, *(SETTLE * one.of.lag + one.fill_time * (1.0 - one.level) for one in drivers)])
+
+    def start(self) -> None:
+        """As a run begins: what is closed is filled and has its torque."""
+        for name, one in self.drivers.items():
+            closed = self.commands.get(name, 0.0) > 0.0
+            one.level, one.torque = float(closed), one.of.most if closed else 0.0
+        self.outputs(0.0)
+
+    def outputs(self, passed: float) -> dict[str, float]:
+        """Commands by signal, those that change alone; passed, time since the last call [s].
+
+        While it shifts it is called most often, so the shortest time between calls is that to the next one.
+        """
+        self.period = min(self.period, passed) if passed > 0.0 else self.period
+        now = {self._signals[name]: self._output(name, passed) for name in self.commands}
+        changed = {signal: value for signal, value in now.items() if self.sent.get(signal) != value}
+        self.sent = now
+        return changed
+
+    def _output(self, name: str, passed: float) -> float:
+        pressure, driver = self.commands[name], self.drivers.get(name)
+        if driver is None:
+            return pressure
+        torque = max(0.0, pressure - self.plant.touch[name]) * self.plant.capacity[name]
+        return driver.command(torque, passed, self.period, open_=pressure == 0.0)

@@ -6,6 +6,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from clutchwork.shifts.record import NEUTRAL
+from clutchwork.shifts.shift_map import ShiftMap
 
 if TYPE_CHECKING:
     from clutchwork.shifts.record import Measured
@@ -20,7 +21,7 @@ SLOW = 0.1
 class GearChoice:
     """The next gear of a `ShiftController`."""
 
-    schedule: ShiftSchedule | None
+    schedule: ShiftSchedule | ShiftMap | None
     settings: ShiftSettings
     wanted: str = ""  # by request
     let_go: str = ""  # gear that was let go before the engine stalled
@@ -34,8 +35,13 @@ class GearChoice:
         """The gear to shift to from the one that is in, empty where it stays; rested: time for the schedule."""
         wanted, self.wanted = self.wanted or self._drive_off(now), ""
         if not wanted and self.schedule is not None and rested:
-            wanted = self.schedule.gear(gear, now.output_speed, now.throttle)
+            wanted = self._scheduled(gear, now)
         return "" if wanted == gear else wanted
+
+    def _scheduled(self, gear: str, now: Measured) -> str:
+        if isinstance(self.schedule, ShiftMap):
+            return self.schedule.gear(gear, now)
+        return gear if self.schedule is None else self.schedule.gear(gear, now.output_speed, now.throttle)
 
     def _drive_off(self, now: Measured) -> str:
         """The gear to drive off in, where the last one was let go and the driver wants to go."""
@@ -43,7 +49,7 @@ class GearChoice:
             return ""
         if self.schedule is None or self.let_go not in self.schedule.ratios:
             return self.let_go
-        return self.schedule.gear(next(iter(self.schedule.ratios)), now.output_speed, now.throttle)
+        return self._scheduled(next(iter(self.schedule.ratios)), now)
 
     def stalls(self, gear: str, launches: bool, period: float, now: Measured) -> bool:
         """Whether the output holds an input that is fixed to an engine too far below its launch speed."""

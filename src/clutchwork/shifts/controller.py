@@ -2,16 +2,21 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
 from clutchwork.base.errors import UseError
+from clutchwork.base.frozen import Frozen
 from clutchwork.base.quote import listed, quote
 from clutchwork.shifts.actuation import Actuation
+from clutchwork.shifts.adaptation import adapt
 from clutchwork.shifts.choice import GearChoice
 from clutchwork.shifts.course import ExchangeSequence
-from clutchwork.shifts.exchange import Exchange, exchanges
+from clutchwork.shifts.exchange import Exchange
+from clutchwork.shifts.handover import Handover, handover, is_straight
+from clutchwork.shifts.parallel import ParallelSequence
+from clutchwork.shifts.plans import plan
 from clutchwork.shifts.plant import Plant
 from clutchwork.shifts.record import NEUTRAL, Measured, ShiftRecord
 from clutchwork.shifts.settings import ShiftSettings
@@ -19,6 +24,9 @@ from clutchwork.shifts.settings import ShiftSettings
 if TYPE_CHECKING:
     from clutchwork.gearbox.gearbox import Gearbox
     from clutchwork.shifts.schedule import ShiftSchedule
+    from clutchwork.shifts.shift_map import ShiftMap
+
+Course = ExchangeSequence | ParallelSequence
 
 
 @dataclass
@@ -27,19 +35,20 @@ class ShiftController:
 
     Use it in a loop around a `cw.Simulator`, as `cw.shifts.drive` has one, or take its commands elsewhere: `step`
     knows nothing of clutchwork's runs. It works out of the gearbox alone which elements are exchanged and what they
-    carry; several exchanges follow one another through the gears between them.
+    carry. Several open and close together, and where statics do not allow that, one after the other through gears.
 
     - mesh: dog clutches of the gear that stand still go in first
     - fill: the element that closes is filled; the one that opens is lowered to what it carries
-    - torque: one takes over the torque from the other: first in upshifts under power and downshifts without
-    - inertia: the input follows a profile to its new speed, by the one that closes where it must be pulled there, by
-      the one that opens where it must be held back
+    - torque: those that close take over the torque: first in upshifts under power and downshifts without
+    - inertia: speeds follow profiles to the new gear, by elements that close where the input must be pulled there, by
+      those that open where it must be held back
     - sync: in the other shifts the torque is taken over here, at equal speeds
-    - end: the element that closed is raised to full pressure, until it does not slip
+    - end: the elements that closed are raised to full pressure, until they do not slip
 
     Freewheels overrun and catch by themselves and need no command. A dog clutch opens when its torque is gone
     and closes near equal speeds, to which the engine comes where no clutch can bring the input there. A request while a
-    shift goes on is kept until its end, but for the time of filling, in which the shift is called off.
+    shift goes on is followed at once, from the speeds that are; where dog clutches or freewheels take part, or statics
+    do not say how, the shift is finished before. One that does not get to its new speed within `longest` goes back.
 
     Without a converter (`launch_speed` of the settings) it lets the input go before the engine stalls, and drives off
     again where the driver wants to.
@@ -47,11 +56,12 @@ class ShiftController:
     Parameters:
         box: the gearbox
         plant: capacities and inertias of the elements and members, from `cw.shifts.plant_of`
-        schedule: when to shift; none: when `request` asks for a gear
+        schedule: when to shift, a `ShiftSchedule` or a `ShiftMap`; none: when `request` asks for a gear
         settings: calibration
         chosen: calibration of single shifts, ("3", "4") or a kind such as "power-off upshift"
         gear: the gear that is in at the start; "N": none
         prefix: path of the transmission in the driveline: signals are `<prefix>.<element>.pressure`
+        known: fill times [s] that `learnt` of another controller said, by default those of the plant
 
     What it did is in `records`, what it asks of the engine in `torque_factor` (a factor of its torque) and `blip`
     (throttle on top of that of the driver).
@@ -59,17 +69,19 @@ class ShiftController:
 
     box: Gearbox
     plant: Plant
-    schedule: ShiftSchedule | None = None
+    schedule: ShiftSchedule | ShiftMap | None = None
     settings: ShiftSettings = field(default_factory=ShiftSettings)
     chosen: Mapping[tuple[str, str] | str, ShiftSettings] = field(default_factory=dict)
     gear: str = NEUTRAL
     prefix: str = "gearbox"
     pause: float = 0.3  # s, from the end of a shift to the next one that the schedule asks for
+    known: Mapping[str, float] = field(default_factory=dict)  # s
     # what it remembers
     records: list[ShiftRecord] = field(default_factory=list)
-    _left: list[Exchange] = field(default_factory=list)
-    _course: ExchangeSequence | None = None
+    _left: list[Exchange | Handover] = field(default_factory=list)
+    _course: Course | None = None
     _called: float = 0.0  # s
+    _seen: tuple[float, Mapping[str, float]] = field(default=(0.0, Frozen()))  # s, rad/s: slips at the last call
     _ended: float = 0.0  # s, end of the last shift
 
     def __post_init__(self) -> None:
@@ -77,6 +89,9 @@ class ShiftController:
         self._choice = GearChoice(self.schedule, self.settings)
         self._do = Actuation(self.box, self.plant, self.prefix)
         self._do.only(self.gear, self.settings)
+        for name, one in self._do.drivers.items():
+            one.fill_time = self.known.get(name, one.fill_time)
+        self._do.start()
         self._ended = -self.pause
         if self.gear == NEUTRAL and self.settings.launch_speed and self.schedule is not None:
             self._choice.let_go = next(iter(self.schedule.ratios))
@@ -84,30 +99,27 @@ class ShiftController:
     # ------------------------------------------------------------------------------------------------ from outside
 
     def request(self, gear: str) -> None:
-        """Ask for a gear, "N" for neutral; a shift that goes on is finished before. UseError for one it does not have.
-
-        A shift that is still filling is called off.
-        """
+        """Ask for a gear, "N" for neutral, also while a shift goes on. UseError for one it does not have."""
         self._known(gear)
         self._choice.request(gear)
 
     def step(self, time: float, now: Measured) -> dict[str, float]:
-        """Pressures [Pa] and positions of sleeves by signal, those that change alone, at a time [s]."""
-        before = dict(self._do.commands)
+        """Pressures [Pa], currents [A] and positions of sleeves by signal, those that change alone, at a time [s]."""
         period = max(0.0, time - self._called)
         self._called = time
         course = self._course
         if self._choice.stalls(self.gear, course is not None and not course.one.off, period, now):
             self._abandon(time, NEUTRAL, "let go before the engine stalled")
-        elif course is not None and course.state in ("mesh", "fill") and self._choice.wanted not in ("", self.gear):
-            self._call_off(time)
+        elif course is not None and self._choice.wanted not in ("", self.gear):
+            self._change_mind(course, time, now)
         if self._course is None:
             wanted = self._choice.take(self.gear, time - self._ended >= self.pause - 1e-9, now)
             if wanted:
                 self._start(wanted, time, now)
         if self._course is not None:
             self._go_on(self._course, time, period, now)
-        return self._do.signals(name for name, value in self._do.commands.items() if value != before[name])
+        self._seen = (time, now.slips)
+        return self._do.outputs(period)
 
     @property
     def shifting(self) -> bool:
@@ -130,9 +142,14 @@ class ShiftController:
         return 0.0 if self._course is None else self._course.blip
 
     @property
+    def learnt(self) -> dict[str, float]:
+        """Fill time of each element behind a piston [s], as shifts have shown it: `known` of the next controller."""
+        return {name: one.fill_time for name, one in self._do.drivers.items()}
+
+    @property
     def commands(self) -> dict[str, float]:
-        """All pressures [Pa] and positions of sleeves by signal, such as for the start of a run."""
-        return self._do.signals(self._do.commands)
+        """All commands by signal, such as for the start of a run."""
+        return dict(self._do.sent)
 
     def _known(self, gear: str) -> None:
         if gear != NEUTRAL and gear not in self.box.gears:
@@ -143,7 +160,7 @@ class ShiftController:
 
     def _start(self, gear: str, time: float, now: Measured) -> None:
         before, after = self._do.closed_in(self.gear), self._do.closed_in(gear)
-        self._left = list(exchanges(self.box, before, after, self.plant.inertias))
+        self._left = list(plan(self.box, before, after, self.plant.inertias, now.input_torque))
         self.records.append(ShiftRecord(self.gear, gear, time, now.input_torque >= 0.0, tuple(self._left)))
         self.gear, self._choice.let_go = gear, ""
         if self._left:
@@ -152,25 +169,39 @@ class ShiftController:
             self._do.only(gear, self.settings)
             self._finish(time)
 
-    def _begin(self, time: float) -> None:
-        """The next exchange."""
+    def _begin(self, time: float, rates: Mapping[str, float] | None = None) -> None:
+        """The next part of the plan; rates, of slips where another shift goes over into it."""
         one, record = self._left[0], self.records[-1]
+        filled, ahead = len(self._left) < len(record.exchanges), self._left[1] if len(self._left) > 1 else None
+        if isinstance(one, Handover):
+            opens = tuple(name for name in self._do.kinds if name not in (*one.kept, *one.elements))
+            on = ahead.on if isinstance(ahead, Handover) else ()
+            made = ParallelSequence(one, self._with(record), self._do, self._handover, time, opens, filled, on)
+            made.over, made.rates = bool(rates), rates or {}
+            self._course = made
+            record.phases.append((time, "fill"))
+            return
         opens = tuple(name for name in self._do.kinds if name not in (*one.kept, one.off, one.on))
         opens += (one.on,) if not one.off else ()
-        filled = len(self._left) < len(record.exchanges)
-        ahead = self._left[1].on if len(self._left) > 1 else ""
-        self._course = ExchangeSequence(one, self._with(record), self._do, time, filled, ahead, opens)
-        self.records[-1].phases.append((time, "mesh"))
+        next_on = ahead.on if isinstance(ahead, Exchange) else ""
+        self._course = ExchangeSequence(one, self._with(record), self._do, time, filled, next_on, opens)
+        record.phases.append((time, "mesh"))
+
+    def _handover(self, off: Sequence[str], on: Sequence[str], kept: Sequence[str]) -> Handover | None:
+        return handover(self.box, off, on, kept, self.plant.inertias)
 
     def _with(self, record: ShiftRecord) -> ShiftSettings:
         """Calibration of a shift."""
         return self.chosen.get((record.before, record.after), self.chosen.get(record.kind, self.settings))
 
-    def _go_on(self, course: ExchangeSequence, time: float, period: float, now: Measured) -> None:
+    def _go_on(self, course: Course, time: float, period: float, now: Measured) -> None:
         new = course.step(time, period, now)
         if new == "failed":
-            self._abandon(time, self.records[-1].before, f"{course.one.on} did not engage")
+            self._fail(course, time, now)
         elif new == "done":
+            if isinstance(course, ParallelSequence):
+                adapt(course)
+                self.records[-1].diagnosis += course.findings()
             self._left.pop(0)
             if self._left:
                 self._begin(time)
@@ -180,11 +211,60 @@ class ShiftController:
         elif new:
             self.records[-1].phases.append((time, new))
 
-    def _call_off(self, time: float) -> None:
-        """The driver wants another gear, and nothing was exchanged yet."""
-        record = self.records[-1]
-        if len(self._left) == len(record.exchanges) and record.exchanges[0].off:
-            self._abandon(time, record.before, "called off")
+    # ------------------------------------------------------------------------------------- other gears than that
+
+    def _fail(self, course: Course, time: float, now: Measured) -> None:
+        """Back to the gear before."""
+        gear = self.records[-1].before
+        if not isinstance(course, ParallelSequence):
+            self._abandon(time, gear, f"{course.one.on} did not engage")
+            return
+        why = f"the input did not come to its new speed within {time - course.since:.2g} s"
+        if not self._go_over(course, gear, why, time, now):
+            self._abandon(time, gear, why)
+
+    def _change_mind(self, course: Course, time: float, now: Measured) -> None:
+        """The driver wants another gear while a shift goes on: at once where statics say how, or later."""
+        wanted, self._choice.wanted = self._choice.wanted, ""
+        first = len(self._left) == len(self.records[-1].exchanges)
+        if course.state in ("mesh", "fill") and first and course.one.off:
+            # nothing was exchanged yet
+            self._abandon(time, self.records[-1].before, "called off")
+            if wanted != self.gear:
+                self._start(wanted, time, now)
+        elif not isinstance(course, ParallelSequence) or not self._go_over(
+            course, wanted, f"changed to {wanted}", time, now
+        ):
+            self._choice.wanted = wanted
+
+    def _go_over(self, course: ParallelSequence, gear: str, why: str, time: float, now: Measured) -> bool:
+        """From the middle of a shift into another gear; whether it can be."""
+        after, record = self._do.closed_in(gear), self.records[-1]
+        kept = tuple(name for name in after if self._do.holds(name, now, course.with_))
+        on = tuple(name for name in after if name not in kept)
+        off = tuple(name for name, value in self._do.commands.items() if value > 0.0 and name not in after)
+        one = self._handover(off, on, kept) if gear in self.box.gears else None
+        if one is None or (gear != record.before and not self._straight(one, now)):
+            return False
+        record.end, record.problem = time, why
+        before = record.before if gear != record.before else record.after
+        self.records.append(ShiftRecord(before, gear, time, now.input_torque >= 0.0, (one,)))
+        self._left, self.gear = [one], gear
+        # in the torque phase the gear before still holds
+        slips = any(abs(now.slips[name]) > course.with_.sync_slip for name in course.one.off)
+        self._begin(time, self._rates(time, now) if slips else None)
+        return True
+
+    def _straight(self, one: Handover, now: Measured) -> bool:
+        """Whether statics allow a way from the speeds that are."""
+        output = now.output_speed
+        begin = output and (now.input_speed / output, {name: slip / output for name, slip in now.slips.items()})
+        return is_straight(self.box, one, now.input_torque, begin or None)
+
+    def _rates(self, time: float, now: Measured) -> dict[str, float]:
+        """Of slips since the last call [rad/s2]."""
+        last, slips = self._seen
+        return {name: (slip - slips.get(name, slip)) / max(time - last, 1e-9) for name, slip in now.slips.items()}
 
     def _abandon(self, time: float, gear: str, why: str) -> None:
         """Not this gear, but another one at once."""

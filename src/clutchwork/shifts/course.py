@@ -33,6 +33,7 @@ class ExchangeSequence:
     torque_factor: float = 1.0  # what the engine is asked for
     blip: float = 0.0  # throttle on top of that of the driver
     _closing: tuple[str, ...] = ()  # elements that close beside `on`
+    _fill_time: float = 0.0  # s
     _loaded: float = 0.0  # N m, at the input where the torque phase began
 
     def __post_init__(self) -> None:
@@ -70,7 +71,8 @@ class ExchangeSequence:
         """The one that closes up to where it touches, the other down to what it carries."""
         one, with_, do = self.one, self.with_, self.do
         takes = not self.filled and (do.slides(one.on) or do.slides(one.off))
-        share = _share(passed, with_.fill_time if takes else 0.0)
+        self._fill_time = self._fill_time or do.fill_time([one.on], with_)
+        share = _share(passed, self._fill_time if takes else 0.0)
         do.carry(one.on, 0.0, with_)
         do.commands.update(dict.fromkeys(self._closing, share * share * with_.full_pressure))
         if do.slides(one.off):
@@ -153,7 +155,7 @@ class ExchangeSequence:
     def _takes_over(self, now: Measured) -> bool:
         """Upshifts under power and downshifts without: the one that closes can take over before speeds change."""
         one, torque = self.one, now.input_torque
-        if not self.do.slides(one.on) or not self.do.carries(one.off, one.off_torque * torque):
+        if one.idle or not self.do.slides(one.on) or not self.do.carries(one.off, one.off_torque * torque):
             return False
         return (torque >= 0.0) == (self._profile.lacks(now) <= 0.0)
 
@@ -170,7 +172,7 @@ class ExchangeSequence:
 
     def _is_synchronous(self, now: Measured) -> bool:
         one, do = self.one, self.do
-        if not one.on:
+        if not one.on or one.idle:
             return True
         if do.is_dog(one.on):
             return now.sleeves.get(one.on, 0.0) > ENGAGED

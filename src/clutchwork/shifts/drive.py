@@ -27,12 +27,16 @@ class Sensed:
         throttle: signal of the throttle of the engine, set to that of the driver times what the controller asks for
         input: speed of the input of the gearbox [rad/s], by default of its input member
         output: the same of its output
+        oil: temperature of the oil [K], where a shift map asks for it
+        grade: of the road [rad], where one does
     """
 
     torque: tuple[str, ...]
     throttle: str = ""
     input: str = ""
     output: str = ""
+    oil: str = ""
+    grade: str = ""
 
     def __post_init__(self) -> None:
         """One name stands for a list of one."""
@@ -53,6 +57,7 @@ class _SensorReader:
         self.ends = [sensed.input or f"{prefix}.{box.input}.speed", sensed.output or f"{prefix}.{box.output}.speed"]
         self.signs = [-1.0 if name[0] == "-" else 1.0 for name in sensed.torque]
         self.plain = [*self.ends, *(name.removeprefix("-") for name in sensed.torque)]
+        self.beside = {name: signal for name, signal in (("oil", sensed.oil), ("grade", sensed.grade)) if signal}
         names = [f"{prefix}.{element.name}" for element in box.elements]
         self.elements = [element.name for element in box.elements]
         # a dog clutch has a rate of its angle
@@ -65,7 +70,8 @@ class _SensorReader:
         total = sum(sign * torque for sign, torque in zip(self.signs, torques, strict=True))
         slips = dict(zip(self.elements, self.sim[self.slips].tolist(), strict=True))
         sleeves = dict(zip(self.dogs, self.sim[self.sleeves].tolist(), strict=True)) if self.dogs else {}
-        return Measured(first, second, total, throttle, slips, sleeves)
+        beside = {name: float(self.sim[signal]) for name, signal in self.beside.items()}
+        return Measured(first, second, total, throttle, slips, sleeves, **beside)
 
 
 def drive(

@@ -38,6 +38,11 @@ class Exchange:
     after: float
     inertia: float  # kg m2, of all members at the input with the output at rest, both elements open
 
+    @property
+    def idle(self) -> bool:
+        """Whether both gears are one: what opens and what closes carries nothing, and no speed waits for it."""
+        return bool(self.off) and self.before == self.after
+
 
 def exchanges(
     box: Gearbox, before: tuple[str, ...], after: tuple[str, ...], inertias: Mapping[str, float]
@@ -51,7 +56,7 @@ def exchanges(
     """
     opens = tuple(name for name in before if name not in after)
     closes = tuple(name for name in after if name not in before)
-    old, new = _ratio(box, before), _ratio(box, after)
+    old, new = ratio_of(box, before), ratio_of(box, after)
     if not new or not opens + closes:
         return ()
     ways = _ways(box, before, opens, closes) if old * new > 0.0 else []
@@ -71,12 +76,13 @@ def _swapped(closed: tuple[str, ...], off: str, on: str) -> tuple[str, ...]:
 
 
 @lru_cache(maxsize=4096)
-def _state(box: Gearbox, closed: tuple[str, ...]) -> GearState:
+def state_of(box: Gearbox, closed: tuple[str, ...]) -> GearState:
+    """Of closed elements that make a gear."""
     return box.state(closed)
 
 
 @lru_cache(maxsize=4096)
-def _ratio(box: Gearbox, closed: tuple[str, ...]) -> float:
+def ratio_of(box: Gearbox, closed: tuple[str, ...]) -> float:
     """Of a combination, 0 where it has none."""
     return float(box.combination(closed).ratio or 0.0)
 
@@ -90,7 +96,7 @@ def _ways(
     found = []
     for off, on in product(opens or ("",), closes or ("",)):
         later = _swapped(closed, off, on)
-        if not _ratio(box, later):
+        if not ratio_of(box, later):
             continue
         rest = tuple(name for name in opens if name != off), tuple(name for name in closes if name != on)
         found += [((off, on), *more) for more in _ways(box, later, *rest)]
@@ -99,16 +105,16 @@ def _ways(
 
 def _detour(box: Gearbox, before: tuple[str, ...], way: tuple[tuple[str, str], ...]) -> float:
     """How far the ratios of a way go beyond its ends: equation (4)."""
-    closed, ratios = before, [_ratio(box, before)]
+    closed, ratios = before, [ratio_of(box, before)]
     for off, on in way:
         closed = _swapped(closed, off, on)
-        ratios.append(_ratio(box, closed))
+        ratios.append(ratio_of(box, closed))
     return sum(abs(second - first) for first, second in pairwise(ratios))
 
 
 def _engage(box: Gearbox, after: tuple[str, ...], closes: tuple[str, ...], inertias: Mapping[str, float]) -> Exchange:
     """Into a gear by one element that slips, the softest: a clutch or brake that carries the least, but something."""
-    state = _state(box, after)
+    state = state_of(box, after)
     usable = _usable(box, after, closes) or _usable(box, after, after)
     if not usable:
         raise UseError("shift", [f"{listed(after)} cannot slip; close a clutch or a brake to engage a gear"])
@@ -120,13 +126,13 @@ def _engage(box: Gearbox, after: tuple[str, ...], closes: tuple[str, ...], inert
 def _usable(box: Gearbox, after: tuple[str, ...], names: tuple[str, ...]) -> list[str]:
     """Clutches and brakes without which the gear is none."""
     slide = [name for name in names if box.element(name).kind in FRICTION]
-    return [name for name in slide if not _ratio(box, tuple(one for one in after if one != name))]
+    return [name for name in slide if not ratio_of(box, tuple(one for one in after if one != name))]
 
 
 def _exchange(
     box: Gearbox, off: str, on: str, before: tuple[str, ...], after: tuple[str, ...], inertias: Mapping[str, float]
 ) -> Exchange:
-    old, new = _state(box, before), _state(box, after)
+    old, new = state_of(box, before), state_of(box, after)
     kept = tuple(name for name in before if name != off)
     torque = _torque(new, on) if on else 0.0
     inertia = _inertia(box, kept, inertias)

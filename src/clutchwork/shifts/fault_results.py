@@ -38,7 +38,8 @@ class FaultResult:
 
     Parameters:
         fault: which one
-        verdict: "none", "drive lost", "other gear", "slips", "decelerates" or "locks the output"; "not simulated" where
+        verdict: "none", "drive lost", "other gear", "slips", "decelerates" or "locks the output", where the output
+        of the gearbox stands for 0.1 s, whatever the vehicle does; "not simulated" where
         no signal makes the fault, with NaN for numbers: a freewheel that does not hold, a dog clutch that does not
         open
         deceleration: largest of the vehicle after the fault, low-passed at 10 Hz [m/s2]

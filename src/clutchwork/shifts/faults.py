@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from math import nan
+from math import isclose, nan
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -27,7 +27,9 @@ NOT_SIMULATED = "not simulated"
 STEP = 1e-3  # s
 HELD = 0.05  # s, for which a gear must be in at the end
 CUT_OFF = 10.0  # Hz, of decelerations
-STOPPED = 0.1  # share of the first speed below which a vehicle counts as stopped
+BURNT = 1.0  # J, from which on an element counts as heated
+STOPPED = 0.1  # share of the first speed of the output below which it counts as stopped
+STANDS = 0.1  # s, for which it must stand: a drive shaft that rings passes zero too
 
 
 def single_faults(box: Gearbox, gears: Sequence[str] = ()) -> Iterator[Fault]:
@@ -134,11 +136,24 @@ def _result(
     ends_in = last[0].gear if held else ""
     deceleration = _deceleration(run, vehicle, at)
     speeds = run[f"{vehicle}.speed"]
-    stops = bool(abs(speeds[-1]) < STOPPED * abs(speeds[0]))
+    stops = _stands(run, f"{prefix}.{box.output}.speed", at)
+    same = fault.ratio is not None and isclose(fault.ratio, box.ratios[fault.gear])
+    # the elements that are left may make the same gear without a row of their own
+    ends_in = ends_in or (fault.gear if same and burnt[most] <= BURNT else "")
     verdict = _verdict(fault, ends_in, deceleration, limit, stops=stops)
-    burns = most if burnt[most] > 1.0 else ""
+    burns = most if burnt[most] > BURNT else ""
     power = float(np.max(np.abs(slipping[later]), initial=0.0)) if burns else 0.0
     return FaultResult(fault, verdict, deceleration, power, burnt[most], burns, float(speeds[-1]), ends_in)
+
+
+def _stands(run: Trajectory, output: str, at: float) -> bool:
+    """Whether the output of the gearbox stands after the fault, while the vehicle still moves or not any more."""
+    times = np.arange(at, float(run.time[-1]), STEP)
+    speed = np.abs(run.at(times)[output])
+    still = speed < STOPPED * abs(float(run[output][0]))
+    # a stretch without one instant at which it turns
+    turns = np.flatnonzero(np.concatenate([[True], ~still, [True]]))
+    return bool(np.max(np.diff(turns)) > STANDS / STEP)
 
 
 def _verdict(fault: Fault, ends_in: str, deceleration: float, limit: float, *, stops: bool) -> str:

@@ -10,13 +10,18 @@ import numpy as np
 from clutchwork.assembly.wiring import wiring
 from clutchwork.base.classes import dataclass
 from clutchwork.base.errors import UseError
+from clutchwork.base.frozen import Frozen
 from clutchwork.base.quote import listed
+from clutchwork.shifts.actuators import ElementActuator
+from clutchwork.shifts.fill_test import FULL, fill_test
 from clutchwork.stepping.simulator import Simulator
 
 if TYPE_CHECKING:
     from clutchwork.assembly.system import System
     from clutchwork.gearbox.gearbox import Gearbox
 
+# Pa, that stands for an element behind a piston which is filled and carries nothing; 0 lets it go
+LEAST = 1.0
 # Pa, at which capacities are read
 LOW, HIGH = 5e5, 1e6
 # nodes turn together where their rows differ by less
@@ -28,33 +33,38 @@ class Plant:
     """Shift elements and inertias of a gearbox as its controller sees them.
 
     Parameters:
-        capacity: torque of each element while it slips, per pressure above the one at which it touches [N m/Pa]
+        capacity: torque of each element while it slips, per pressure above the one at which it touches [N m/Pa]; behind
+        valves and pistons its largest torque over 1 MPa, which stands for the full command
         touch: pressure at which each element touches [Pa]
         inertias: of each member with all that is fixed to it [kg m2]; the output is left out
+        actuators: what stands before elements that are not pressed directly
     """
 
     capacity: Mapping[str, float]
     touch: Mapping[str, float]
     inertias: Mapping[str, float]
+    actuators: Mapping[str, ElementActuator] = Frozen()
 
 
 def plant_of(system: System, box: Gearbox, prefix: str = "gearbox") -> Plant:
     """Measure a gearbox of a driveline.
 
     Use it to give a `ShiftController` what a control unit is calibrated with. Capacities are read at two pressures, so
-    they are those of any element whose capacity is linear in its pressure. UseError for elements that no
-    pressure closes.
+    they are those of any element whose capacity is linear in its pressure; valves and pistons before it are measured by
+    `cw.shifts.fill_test`. UseError for elements that no pressure closes.
     """
-    names = [element.name for element in box.elements if element.kind in ("clutch", "brake")]
+    actuators = fill_test(system, box, prefix)
+    names = [e.name for e in box.elements if e.kind in ("clutch", "brake") and e.name not in actuators]
     low, high = (_capacities(system, prefix, names, pressure) for pressure in (LOW, HIGH))
     slope = {name: (high[name] - low[name]) / (HIGH - LOW) for name in names}
     flat = [name for name in names if slope[name] <= 0.0]
     if flat:
         raise UseError("cw.shifts.plant_of", [f"pressure does nothing for {listed(flat)}; give them a gain"])
     sliding = _sliding(system, prefix)
-    touch = {name: max(0.0, LOW - low[name] / slope[name]) for name in names}
+    touch = {name: max(0.0, LOW - low[name] / slope[name]) for name in names} | dict.fromkeys(actuators, LEAST)
     capacity = {name: slope[name] * sliding.get(name, 1.0) for name in names}
-    return Plant(capacity, touch, _inertias(system, box, prefix))
+    capacity |= {name: one.most / FULL for name, one in actuators.items()}
+    return Plant(capacity, touch, _inertias(system, box, prefix), actuators)
 
 
 def _capacities(system: System, prefix: str, names: list[str], pressure: float) -> dict[str, float]:

@@ -12,7 +12,7 @@ if TYPE_CHECKING:
     from clutchwork.shifts.settings import ShiftSettings
 
 # time constant of a speed behind its filter [s]: a drive shaft swings faster
-FILTER = 0.04
+FILTER = 0.08
 # throttle per speed that is lacking to that of a dog clutch [s/rad], and per that times time [1/rad]
 BLIP, BLIP_INTEGRAL = 0.02, 0.1
 # what it lacks at most where that counts [rad/s]

@@ -6,6 +6,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 
 from clutchwork.shifts.exchange import Exchange
+from clutchwork.shifts.handover import Handover
 
 NEUTRAL = "N"
 
@@ -21,6 +22,8 @@ class Measured:
         throttle: of the driver, 0 to 1
         slips: of elements [rad/s], those of a shift that goes on at least
         sleeves: position of dog clutches, 0 out, 1 in
+        oil: temperature of the oil [K], for the inhibits of a `ShiftMap`
+        grade: of the road, above 0 uphill [rad], for the same
     """
 
     input_speed: float
@@ -29,6 +32,20 @@ class Measured:
     throttle: float
     slips: Mapping[str, float]
     sleeves: Mapping[str, float] = field(default_factory=dict)
+    oil: float = 353.15
+    grade: float = 0.0
+
+
+@dataclass(frozen=True)
+class Finding:
+    """Why a shift was harsh: the instant [s], the cause in words and numbers, the settings that cure it."""
+
+    time: float
+    cause: str
+    cure: str
+
+    def __str__(self) -> str:
+        return f"{self.time:.3f} s: {self.cause}; {self.cure}"
 
 
 @dataclass
@@ -40,20 +57,23 @@ class ShiftRecord:
         after: gear that was asked for
         begin: instant of the command [s]
         power_on: whether the engine drove then
-        exchanges: of elements, one after the other
+        exchanges: of elements, one after the other; a `Handover` has several that open and close together
         phases: instants [s] at which the states of the controller began
         end: instant at which the controller was done [s]; none: the shift is still going on
         problem: why the gear was not reached, empty where it was
+        diagnosis: why it was harsh, as its controller saw it: elements that gripped too late or too early, a shift that
+        was closed with slip; `cw.shifts.diagnose` sees more in a run
     """
 
     before: str
     after: str
     begin: float
     power_on: bool
-    exchanges: tuple[Exchange, ...] = ()
+    exchanges: tuple[Exchange | Handover, ...] = ()
     phases: list[tuple[float, str]] = field(default_factory=list)
     end: float | None = None
     problem: str = ""
+    diagnosis: tuple[Finding, ...] = ()
 
     @property
     def reached(self) -> bool:
@@ -67,5 +87,6 @@ class ShiftRecord:
             return "garage shift"
         up = abs(self.exchanges[-1].after) < abs(self.exchanges[0].before)
         power = "power-on" if self.power_on else "power-off"
-        many = " double" if len(self.exchanges) > 1 else ""
+        count = sum(len(one.on) if isinstance(one, Handover) else 1 for one in self.exchanges)
+        many = " double" if count > 1 else ""
         return f"{power}{many} {'upshift' if up else 'downshift'}"

@@ -15,6 +15,8 @@ class ShiftSettings:
         full_pressure: at which elements of a gear that is in are held [Pa]
         torque_time: of the torque phase, in which one element takes over from the other [s]
         inertia_time: of the inertia phase, in which the speed of the input changes [s]
+        usual_step: change of that speed up to which this holds [rad/s]; larger ones take longer in proportion
+        stretch: most factor by which it takes longer, for a larger step or where the torque at hand is too little
         end_time: in which the element that closed is raised to full pressure [s]
         margin: capacity of an element that still holds, over the torque that it carries
         reduction: share by which the engine is asked to lower its torque in the inertia phase of an upshift under power
@@ -26,6 +28,7 @@ class ShiftSettings:
         dog_slip: slip below which a dog clutch is commanded to engage, below the one at which its teeth mesh [rad/s]
         blip: most throttle that the engine is asked for where nothing else can bring the input to the speed of a dog
         clutch, or unload one that opens, 0 to 1
+        adaptation: share of what a shift showed of the filling that is learnt for the next one, 0: nothing is
         longest: after which an exchange is closed whatever the slip [s]
         launch_speed: that the input keeps while an element drives off, where no converter does [rad/s]; 0: there is one
         launch_gain: proportional gain of that [1/s], far below the slowest mode of the drive shafts
@@ -38,6 +41,8 @@ class ShiftSettings:
     full_pressure: float = 1.0e6
     torque_time: float = 0.15
     inertia_time: float = 0.35
+    usual_step: float = 150.0
+    stretch: float = 2.0
     end_time: float = 0.1
     margin: float = 1.3
     reduction: float = 0.3
@@ -48,6 +53,7 @@ class ShiftSettings:
     sync_slip: float = 1.0
     dog_slip: float = 4.0
     blip: float = 0.4
+    adaptation: float = 1.0
     longest: float = 2.5
     launch_speed: float = 0.0
     launch_gain: float = 4.0

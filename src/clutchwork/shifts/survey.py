@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any
 
 from clutchwork.base.classes import dataclass
 from clutchwork.shifts.controller import ShiftController
+from clutchwork.shifts.diagnosis import diagnose, explain
 from clutchwork.shifts.drive import Sensed, drive
 from clutchwork.shifts.metrics import ShiftQuality, qualities
 from clutchwork.shifts.plant import plant_of
@@ -122,7 +123,11 @@ def survey(
             run = drive(sim, control, until, sensed=sensed, throttle=pedal)
             found = qualities(run, box, prefix, torque=torque, acceleration=acceleration)
             quality = next((one for one in reversed(found) if one.shift.after == after), None)
-            made.append(Surveyed(throttle, control.records[-1], quality, run))
+            record = control.records[-1]
+            if quality is not None:
+                why = diagnose(run, box, quality, prefix, torque=torque, acceleration=acceleration)
+                record = explain(record, why)
+            made.append(Surveyed(throttle, record, quality, run))
     return Survey(tuple(made))
 
 

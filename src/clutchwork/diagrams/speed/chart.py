@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 from clutchwork.diagrams.letters import width_of
 from clutchwork.diagrams.marks import FAINT, GREY, HELD, IDLE, INK, NAME, POWER, SMALL, Mark, Pen
 from clutchwork.diagrams.power import sources
+from clutchwork.diagrams.speed.plan import name_of
 from clutchwork.diagrams.title import draw_legend, draw_title
 from clutchwork.schematic.pen import Rect, around
 
@@ -22,14 +23,14 @@ LEGEND = ((POWER, "turns with power"), (IDLE, "turns without power"), (HELD, "he
 def painted(box: Definition, states: Sequence[GearState], now: GearState | None) -> list[Mark]:
     """All marks of a chart; without a gear to show, of all."""
     pen = Pen()
-    shown = [state for state in states if now is None or state.gear == now.gear]
+    shown = [state for state in states if now is None or state.closed == now.closed]
     left = 14.0 + max(width_of(member, NAME) for member in box.members)
     right = left + COLUMN * len(shown)
     powers = [sources(box, state) for state in shown]
     unit = UNIT * min(1.0, 6.0 / max(1.0, *(abs(v) for state in shown for v in state.speeds.values())))
     y = 0.0
     for number, state in enumerate(shown):
-        pen.label(left + COLUMN * (number + 0.5), -6.0, state.gear, NAME + 0.5, INK, bold=True)
+        pen.label(left + COLUMN * (number + 0.5), -6.0, name_of(state), NAME + 0.5, INK, bold=True)
     for member in box.members:
         speeds = [state.speeds[member] for state in shown]
         y += LEAST + unit * max(0.0, *speeds)

@@ -52,16 +52,21 @@ def ladders(box: Definition, words: float) -> list[Ladder]:
     return made
 
 
+def name_of(state: GearState) -> str:
+    """Of a gear; of closed elements that are none of the table, these."""
+    return state.gear or "+".join(state.closed)
+
+
 def span(made: Sequence[Ladder], states: Sequence[GearState]) -> tuple[float, float, float]:
     """Lowest and highest speed, and the height of a speed of 1 [px]."""
     shown = [state.speeds.get(member, 0.0) for state in states for one in made for member in one.columns]
-    low, high = min(0.0, *shown), max(1.0, *shown)
+    low, high = min([0.0, *shown]), max([1.0, *shown])
     return low, high, min(UNIT, TALLEST / (high - low))
 
 
 def painted(box: Definition, states: Sequence[GearState], now: GearState | None) -> list[Mark]:
     """All marks of a speed plan; the line of one gear stands out where `now` is given."""
-    pen, speeds = Pen(), {state.gear: {HOUSING: 0.0, **state.speeds} for state in states}
+    pen, speeds = Pen(), {name_of(state): {HOUSING: 0.0, **state.speeds} for state in states}
     made = ladders(box, 12.0 + max((width_of(gear, NAME, bold=True) for gear in speeds), default=0.0))
     low, high, scale = span(made, states)
     columns = [column for one in made for column in one.columns.values()]
@@ -120,7 +125,7 @@ def _draw_gears(
     right = columns[order[-1]]
     ends = spread([-scale * of[order[-1]] for of in speeds.values()], ROW)
     for number, ((gear, of), place) in enumerate(zip(speeds.items(), ends, strict=True)):
-        plain = now is None or gear == now.gear
+        plain = now is None or gear == name_of(now)
         colour = COLOURS[number % len(COLOURS)] if now is None else POWER if plain else FAINT
         points = [(columns[member], -scale * of[member]) for member in order]
         pen.line(points[0], points[-1], colour=colour, width=2.4 if now and plain else 1.4, what=f"gear {gear}")

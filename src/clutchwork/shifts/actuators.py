@@ -1,0 +1,45 @@
+"""What stands between the controller and a shift element: valves and pistons. docs/theory/shifts.md (17)."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from clutchwork.base.classes import dataclass
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+
+@dataclass(frozen=True)
+class ElementActuator:
+    """How a shift element is commanded, and what its torque makes of it; `cw.shifts.fill_test` measures it.
+
+    Parameters:
+        signal: of the command, such as "A_valve.current"
+        commands: from the empty piston to full torque, in the unit of the signal; falling where a valve opens without
+        current
+        torques: of the slipping element at these, at rest of the piston [N m], rising
+        fill_time: with the last command, until a piston that was empty touches [s]
+        kiss: command at which it touches
+        lag: time constant of the torque behind the command [s]
+    """
+
+    signal: str
+    commands: Sequence[float]
+    torques: Sequence[float]
+    fill_time: float
+    kiss: float
+    lag: float
+
+    @property
+    def most(self) -> float:
+        """Largest torque [N m]."""
+        return self.torques[-1]
+
+    def command(self, torque: float) -> float:
+        """At which the element carries a torque in the long run; that of the kiss point for none."""
+        carrying = [n for n, value in enumerate(self.torques) if value > 0.0]
+        torques = [0.0, *(self.torques[n] for n in carrying)]
+        return float(np.interp(torque, torques, [self.kiss, *(self.commands[n] for n in carrying)]))

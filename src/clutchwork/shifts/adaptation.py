@@ -1,0 +1,29 @@
+"""What a shift shows of the filling of its elements, learnt for the next one. docs/theory/shifts.md (18)."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from clutchwork.shifts.parallel import JOLT, USUAL
+
+if TYPE_CHECKING:
+    from clutchwork.shifts.parallel import ParallelSequence
+
+# change of the fill time per jolt [s/rad], per share of it that an element was late, and at most
+PER_JOLT, PER_LATE, MOST = 0.04, 0.3, 0.08
+
+
+def adapt(course: ParallelSequence) -> None:
+    """Longer filling of those that closed too late, shorter of those that gripped while they were filled.
+
+    Late are elements for which the torque phase had to wait, for the input ran away meanwhile. Where nothing took the
+    torque over before speeds changed nothing is seen.
+    """
+    early = course.jolt > JOLT
+    for name in course.one.on if early else course.takes:
+        driver = course.do.drivers.get(name)
+        if driver is None:
+            continue
+        late = max(0.0, course.late - USUAL) / max(driver.fill_time, USUAL)
+        change = -min(MOST, PER_JOLT * course.jolt) if early else min(MOST, PER_LATE * late)
+        driver.fill_time *= 1.0 + course.with_.adaptation * change

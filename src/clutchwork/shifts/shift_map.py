@@ -1,0 +1,177 @@
+"""Shift maps of the trade: a line for each shift over a speed and the pedal, kickdown, and what forbids a gear."""
+
+from __future__ import annotations
+
+import csv
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import field
+from itertools import pairwise
+from math import inf
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from clutchwork.base.classes import dataclass
+from clutchwork.base.errors import ModelError, Problem, UseError
+from clutchwork.base.frozen import frozen
+from clutchwork.base.paths import path_of
+from clutchwork.base.quote import listed, quote
+
+if TYPE_CHECKING:
+    from clutchwork.gearbox.gearbox import Gearbox
+    from clutchwork.shifts.record import Measured
+
+Pair = tuple[str, str]
+Line = Sequence[tuple[float, float]]
+# what lines are speeds of
+INPUT, OUTPUT, VEHICLE = "input", "output", "vehicle"
+# SI per unit of a speed in a table
+UNITS = {"rad/s": 1.0, "rpm": np.pi / 30.0, "1/min": np.pi / 30.0, "m/s": 1.0, "km/h": 1.0 / 3.6, "mph": 0.44704}
+# least gap between the lines up and down, as a share of the speed up
+GAP = 0.02
+
+
+@dataclass(frozen=True)
+class Inhibit:
+    """Gears that are not shifted up into while the oil is colder than a temperature [K], or on a climb [rad]."""
+
+    gears: tuple[str, ...]
+    colder_than: float = -inf
+    steeper_than: float = inf
+
+    def holds(self, gear: str, now: Measured) -> bool:
+        """Whether it forbids an upshift into a gear at present."""
+        return gear in self.gears and (now.oil < self.colder_than or now.grade > self.steeper_than)
+
+
+@dataclass(frozen=True)
+class ShiftMap:
+    """When to shift, by a line of its own for each pair of gears: speed over the pedal, 0 to 1.
+
+    Use it where a `ShiftSchedule` with two lines for all gears is too little: as the `schedule` of a `ShiftController`.
+    Shift ("1", "2") is made above its line, ("2", "1") below its own; lines are linear between their points and held
+    outside. Where a line leads over several gears they are skipped, if `skips` says so.
+
+    Parameters:
+        ratios: of the forward gears, first gear first
+        lines: points (pedal, speed) by pair of gears
+        of: what the speeds are of: "input" of the gearbox, which is the turbine of a converter [rad/s], its "output"
+        [rad/s], or the "vehicle" [m/s]
+        per_output: speed of the vehicle per speed of the output [m], for lines of the vehicle
+        kickdown: pedal from which on `kickdown_speeds` count instead of lines; above 1: there is none
+        kickdown_speeds: by pair of gears, of the same as lines
+        fastest: speed of the input that no shift may lead to [rad/s]
+        inhibits: what forbids upshifts
+        skips: whether gears are skipped
+    """
+
+    ratios: Mapping[str, float]
+    lines: Mapping[Pair, Line]
+    of: str = OUTPUT
+    per_output: float = 1.0
+    kickdown: float = inf
+    kickdown_speeds: Mapping[Pair, float] = field(default_factory=dict)
+    fastest: float = inf
+    inhibits: tuple[Inhibit, ...] = ()
+    skips: bool = True
+
+    def __post_init__(self) -> None:
+        """Tables that never change. ModelError for lines that are missing, or with which gears hunt."""
+        vars(self).update(ratios=frozen(self.ratios), inhibits=tuple(self.inhibits))
+        found = [*self._missing()] or [*self._hunting()]
+        if found:
+            raise ModelError(found, "shift map")
+
+    @classmethod
+    def from_csv(
+        cls, path: str | Path, box: Gearbox, *, of: str = OUTPUT, unit: str = "rad/s", **more: object
+    ) -> ShiftMap:
+        """A map from a table with the columns shift, pedal and speed: `1-2, 0.3, 25`.
+
+        Parameters: of, what the speeds are of; unit, of the speeds: rad/s, rpm, m/s, km/h or mph; more, fields of the
+        map. UseError for lines of the file that cannot be read, ModelError for lines of the map that make gears hunt.
+        """
+        if unit not in UNITS:
+            raise UseError("ShiftMap.from_csv", [f"unit is {quote(unit)}; choose from {listed(UNITS)}"])
+        rows, lines = _rows(path_of("ShiftMap.from_csv", path, "map.csv")), dict[Pair, list[tuple[float, float]]]()
+        for pair, pedal, speed in rows:
+            lines.setdefault(pair, []).append((pedal, speed * UNITS[unit]))
+        forward = sorted((gear for gear, ratio in box.ratios.items() if ratio > 0.0), key=lambda g: -box.ratios[g])
+        used = {gear: box.ratios[gear] for gear in forward if any(gear in pair for pair in lines)}
+        sorted_lines = {pair: tuple(sorted(points)) for pair, points in lines.items()}
+        return cls(used, sorted_lines, of, **more)  # type: ignore[arg-type]
+
+    def gear(self, current: str, now: Measured) -> str:
+        """The gear to drive in, from the one that is in."""
+        order = list(self.ratios)
+        if current not in self.ratios:
+            return current
+        place = order.index(current)
+        for _ in range(len(order) if self.skips else 1):
+            new = self._step(order, place, now)
+            if new == place:
+                break
+            place = new
+        return order[place]
+
+    def speed(self, pair: Pair, pedal: float) -> float:
+        """Speed of the output [rad/s] at which a shift is made."""
+        if pedal >= self.kickdown and pair in self.kickdown_speeds:
+            value = self.kickdown_speeds[pair]
+        else:
+            points = self.lines[pair]
+            value = float(np.interp(pedal, [point[0] for point in points], [point[1] for point in points]))
+        return value / {INPUT: self.ratios[pair[0]], OUTPUT: 1.0, VEHICLE: self.per_output}[self.of]
+
+    def _step(self, order: Sequence[str], place: int, now: Measured) -> int:
+        here, speed = order[place], now.output_speed
+        if place + 1 < len(order) and speed > self.speed((here, order[place + 1]), now.throttle):
+            return place if any(one.holds(order[place + 1], now) for one in self.inhibits) else place + 1
+        if place > 0 and speed < self.speed((here, order[place - 1]), now.throttle):
+            return place if speed * self.ratios[order[place - 1]] > self.fastest else place - 1
+        return place
+
+    def _missing(self) -> Iterator[Problem]:
+        if self.of not in (INPUT, OUTPUT, VEHICLE):
+            yield Problem("shift map", "of", f"is {quote(self.of)}", remedy="choose from input, output, vehicle")
+        for lower, higher in pairwise(self.ratios):
+            for pair in ((lower, higher), (higher, lower)):
+                if pair not in self.lines or len(self.lines[pair]) == 0:
+                    yield Problem(f"shift {'-'.join(pair)}", "", "has no line", remedy="give points (pedal, speed)")
+
+    def _hunting(self) -> Iterator[Problem]:
+        """An upshift must leave the output above the line down, and no line may cross the one of the next gear."""
+        gears = list(self.ratios)
+        pedals = sorted({point[0] for line in self.lines.values() for point in line} | {1.0})
+        for number, (lower, higher) in enumerate(pairwise(gears)):
+            for pedal in pedals:
+                up, down = self.speed((lower, higher), pedal), self.speed((higher, lower), pedal)
+                if down > (1.0 - GAP) * up:
+                    fault = f"hunts at pedal {pedal:g}: up at {up:.4g} rad/s of the output, down at {down:.4g}"
+                    remedy = f"keep the line down {GAP:.0%} below the line up"
+                    yield Problem(f"shifts {lower}-{higher}-{lower}", "", fault, remedy=remedy)
+                    break
+                after = gears[number + 2] if number + 2 < len(gears) else ""
+                if after and self.speed((higher, after), pedal) <= up:
+                    fault = f"is above that of {higher}-{after} at pedal {pedal:g}, so that {higher} is never driven in"
+                    yield Problem(f"line {lower}-{higher}", "", fault, remedy="order the lines up by their gears")
+                    break
+
+
+def _rows(path: Path) -> list[tuple[Pair, float, float]]:
+    """Rows of a table, a head or not; UseError names those that cannot be read."""
+    made, wrong = list[tuple[Pair, float, float]](), list[str]()
+    with path.open(encoding="utf-8-sig", newline="") as file:
+        for number, row in enumerate(csv.reader(file), 1):
+            cells = [cell.strip() for cell in row]
+            if not any(cells) or (number == 1 and cells[0].lower() == "shift"):
+                continue
+            try:
+                first, second = cells[0].split("-")
+                made.append(((first.strip(), second.strip()), float(cells[1]), float(cells[2])))
+            except (ValueError, IndexError):
+                wrong.append(f"{path.name}, line {number}: {quote(','.join(cells))} is no row such as 1-2, 0.3, 25")
+    if wrong or not made:
+        raise UseError("ShiftMap.from_csv", wrong or [f"{path.name} has no rows; write lines such as 1-2, 0.3, 25"])
+    return made
