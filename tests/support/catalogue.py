@@ -14,6 +14,8 @@ import clutchwork.gearbox
 
 FOLDER = Path(clutchwork.gearbox.__file__).parent / "catalogue"
 NAMES = sorted(path.stem for path in FOLDER.glob("*.toml"))
+# with a row in which two speeds are free
+SPLITS = ("gm-2ml70", "toyota-p112", "toyota-p410")
 # singular values of these small matrices lie above 1e-3 of the largest, or at rounding
 SMALL = 1e-9
 
@@ -52,10 +54,10 @@ class Box:
 
     def __init__(self, content: Mapping[str, Any]) -> None:
         self.content = content
-        self.elements = {n: e["members"] if isinstance(e, dict) else e for n, e in content["elements"].items()}
+        self.elements = {n: e["members"] if isinstance(e, dict) else e for n, e in content.get("elements", {}).items()}
         self.kinds = {
             name: entry["type"] if isinstance(entry, dict) else "brake" if "housing" in entry else "clutch"
-            for name, entry in content["elements"].items()
+            for name, entry in content.get("elements", {}).items()
         }
         sets = [row for entry in content["sets"].values() for row in set_rows(entry)]
         named = [content["input"], content["output"], *(m for row in sets for m, _ in row)]
