@@ -137,7 +137,7 @@ def test_every_combination(name: str) -> None:
 def test_too_little_and_too_much_is_told(values: dict[str, object], words: str) -> None:
     with pytest.raises(cw.UseError, match=words):
         cw.Gearbox.load("toyota-p410").operating_point("split", torque=50.0, **values)  # type: ignore[arg-type]
-    with pytest.raises(cw.UseError, match="choose from 'EVT1' and 'EVT2'|is not a split"):
+    with pytest.raises(cw.UseError, match="is not a split; choose from"):
         cw.Gearbox.load("gm-2ml70").mechanical_points("2")
 
 

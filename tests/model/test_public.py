@@ -25,7 +25,7 @@ PUBLIC = [
     *("Gearbox", "HeatFlow", "Hint", "Hints", "Interrupted", "Law", "Loss", "Losses"),
     *("ModelError", "ModelWarning", "Node", "OptionError", "Options", "Problem", "Rate", "Signal", "SimulationError"),
     *("Simulator", "State", "StateError"),
-    *("StoppedEarly", "System", "ThermalNode", "Trajectory", "UnknownName", "UseError"),
+    *("StoppedEarly", "SupplyPower", "System", "ThermalNode", "Trajectory", "UnknownName", "UseError"),
     *(
         "compare",
         "diagram",

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 from clutchwork.gearbox.gear_set import HOUSING
 
 if TYPE_CHECKING:
-    from clutchwork.diagrams.shown import Shown
+    from clutchwork.diagrams.shown import BoxAtWork
     from clutchwork.gearbox.definition import Definition
 
 # who puts power into a member: a set and its port, an element, input or output
@@ -16,7 +16,7 @@ Source = tuple[str, str]
 INPUT, OUTPUT = ("", "input"), ("", "output")
 
 
-def sources(box: Definition, now: Shown) -> dict[str, dict[Source, float]]:
+def sources(box: Definition, now: BoxAtWork) -> dict[str, dict[Source, float]]:
     """Power per power 1 at the input that each member takes up at each place; those of a member add up to zero."""
     found: dict[str, dict[Source, float]] = {member: {} for member in box.members}
     for one in box.sets:

@@ -11,14 +11,14 @@ from clutchwork.gearbox.operating import OperatingPoint
 if TYPE_CHECKING:
     from clutchwork.gearbox.state import GearState
 
-    AtWork = GearState | OperatingPoint | None
+    Drawable = GearState | OperatingPoint | None
 
 Floats = Mapping[str, float]
 MINUS = "\N{MINUS SIGN}"
 
 
 @dataclass(frozen=True)
-class Shown:
+class BoxAtWork:
     """Speeds, torques and powers to one scale.
 
     Parameters: name, of the row; caption, above the picture; closed, elements that carry, machines among them;
@@ -36,7 +36,7 @@ class Shown:
     speeds_of: str = "that of the input"
 
 
-def shown(now: AtWork) -> Shown | None:
+def shown(now: Drawable) -> BoxAtWork | None:
     """A gear or an operating point to one scale; None where neither is shown."""
     if now is None:
         return None
@@ -49,15 +49,15 @@ def gear_text(now: GearState) -> str:
     return f"{name}, ratio {now.ratio:.3f}".replace("-", MINUS)
 
 
-def of_gear(now: GearState) -> Shown:
+def of_gear(now: GearState) -> BoxAtWork:
     """A gear, per speed 1 and torque 1 at the input."""
     text = gear_text(now)
     caption = f"{text}: {', '.join(now.closed)} closed" if now.gear else text
     powers = (next(iter(now.speeds.values())), -now.load * list(now.speeds.values())[1])
-    return Shown(now.gear, caption, now.closed, now.speeds, now.torques, now.set_powers, *powers)
+    return BoxAtWork(now.gear, caption, now.closed, now.speeds, now.torques, now.set_powers, *powers)
 
 
-def _of_point(now: OperatingPoint) -> Shown:
+def _of_point(now: OperatingPoint) -> BoxAtWork:
     """Over the power of the engine, or of the output where that drives alone."""
     ends = list(now.speeds.values())[:2]
     speed = ends[0] or ends[1] or 1.0
@@ -66,7 +66,7 @@ def _of_point(now: OperatingPoint) -> Shown:
     torques = {**now.torques, **now.machine_torques}
     # a machine that is given no torque turns idle
     closed = (*now.closed, *(name for name, value in now.machine_torques.items() if value))
-    return Shown(
+    return BoxAtWork(
         now.mode,
         _words(now),
         closed,

@@ -10,11 +10,11 @@ from clutchwork.diagrams.marks import GREY, INK, NAME, TITLE, Pen
 from clutchwork.schematic.pen import Rect
 
 if TYPE_CHECKING:
-    from clutchwork.diagrams.shown import Shown
+    from clutchwork.diagrams.shown import BoxAtWork
     from clutchwork.gearbox.definition import Definition
 
 
-def draw_title(pen: Pen, box: Rect, what: Definition, now: Shown | None) -> None:
+def draw_title(pen: Pen, box: Rect, what: Definition, now: BoxAtWork | None) -> None:
     """Name of the gearbox and gear above what is drawn."""
     high = box.low - 14.0
     if now is not None:

@@ -38,6 +38,7 @@ NAMES = {
     "SimulationError": "run.trajectory",
     "State": "results.state",
     "StateError": "results.state",
+    "SupplyPower": "declare.node",
     "StoppedEarly": "run.failure",
     "System": "assembly.system",
     "ThermalNode": "declare.node",

@@ -36,14 +36,14 @@ class Balance:
     load: Fraction | None
 
 
-class Unknown(NamedTuple):
+class UnknownTorque(NamedTuple):
     """A torque that is looked for: at a wheel of a set, of an element, of a machine, or of the load."""
 
     owner: str
     port: str
 
 
-LOAD = Unknown("", "load")
+LOAD = UnknownTorque("", "load")
 
 
 def ideal_balance(box: Definition, closed: tuple[str, ...]) -> Balance:
@@ -91,7 +91,7 @@ def _solve(box: Definition, closed: tuple[str, ...], factors: Factors) -> Balanc
     rows.act(box.input, ONE)
     rows.act(box.output, LOAD)
     found = rows.solved()
-    return Balance(found.sets(box), {name: found.value(Unknown(name, "")) for name in closed}, found.value(LOAD))
+    return Balance(found.sets(box), {name: found.value(UnknownTorque(name, "")) for name in closed}, found.value(LOAD))
 
 
 class BalanceRows:
@@ -99,37 +99,37 @@ class BalanceRows:
 
     def __init__(self, box: Definition, closed: tuple[str, ...], factors: Factors) -> None:
         """What sets and closed elements do; outside of them nothing acts yet."""
-        self.places: dict[Unknown, int] = {}
+        self.places: dict[UnknownTorque, int] = {}
         self.members: dict[str, Row] = {member: {} for member in box.members}
         self.rows: list[Row] = []
         for one in box.sets:
             planets: Row = {}
             for wheel, size, factor in zip(one.shape.wheels, one.speeds_of_planets(), factors[one.name], strict=True):
-                column = self.column(Unknown(one.name, wheel.port))
+                column = self.column(UnknownTorque(one.name, wheel.port))
                 planets[column] = factor / size
                 self._add(one.members[wheel.port], column, ONE)
                 self._add(one.carrier, column, -ONE)
             self.rows.append(planets)
         for name in closed:
-            element, column = box.element(name), self.column(Unknown(name, ""))
+            element, column = box.element(name), self.column(UnknownTorque(name, ""))
             self._add(element.follower, column, ONE)
             self._add(element.base, column, -ONE)
 
-    def column(self, key: Unknown) -> int:
+    def column(self, key: UnknownTorque) -> int:
         """The column of an unknown torque."""
         return self.places.setdefault(key, len(self.places))
 
-    def act(self, member: str, torque: Unknown | Fraction) -> None:
+    def act(self, member: str, torque: UnknownTorque | Fraction) -> None:
         """A torque from outside on a member, known or not."""
-        if isinstance(torque, Unknown):
+        if isinstance(torque, UnknownTorque):
             self._add(member, self.column(torque), ONE)
         else:
             self._add(member, GIVEN, torque)
 
-    def solved(self) -> Solution:
+    def solved(self) -> BalanceSolution:
         """The torques that follow."""
         rows = [*self.rows, *self.members.values()]
-        return Solution(self.places, eliminate(rows, range(len(self.places)), traced=False))
+        return BalanceSolution(self.places, eliminate(rows, range(len(self.places)), traced=False))
 
     def _add(self, member: str, column: int, value: Fraction) -> None:
         """Add a torque to the balance of a member; the housing carries what it must."""
@@ -141,13 +141,13 @@ class BalanceRows:
             del row[column]
 
 
-class Solution(NamedTuple):
+class BalanceSolution(NamedTuple):
     """Torques that follow from a balance."""
 
-    places: Mapping[Unknown, int]
+    places: Mapping[UnknownTorque, int]
     echelon: Echelon
 
-    def value(self, key: Unknown) -> Fraction | None:
+    def value(self, key: UnknownTorque) -> Fraction | None:
         """A torque; None where the balance leaves it open."""
         place = self.places[key]
         row = self.echelon.solved.get(place)
@@ -158,7 +158,7 @@ class Solution(NamedTuple):
     def sets(self, box: Definition) -> dict[str, Mapping[str, Fraction | None]]:
         """Torques at the ports of all sets."""
         return {
-            one.name: _ports(one, {w.port: self.value(Unknown(one.name, w.port)) for w in one.shape.wheels})
+            one.name: _ports(one, {w.port: self.value(UnknownTorque(one.name, w.port)) for w in one.shape.wheels})
             for one in box.sets
         }
 

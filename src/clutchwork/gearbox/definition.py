@@ -61,9 +61,10 @@ class Definition:
     """What makes up a gearbox, as its users write it down.
 
     Parameters: sets, gear sets; shafts, members that may turn freely in a gear, or that one element alone names;
-    elements, shift elements; machines, the member that each electric machine turns with; gears, which elements are closed in each gear; always_closed, elements that a shift table
-    leaves out; published, ratio by gear as its maker says it, of the `ratio_form` "in/out" or "out/in", met within
-    `tolerance`, or within `tolerance_relative` of its value where that is more.
+    elements, shift elements; machines, the member that each electric machine turns with; gears, which elements are
+    closed in each gear; always_closed, elements that a shift table leaves out; published, ratio by gear as its maker
+    says it, of the `ratio_form` "in/out" or "out/in", met within `tolerance`, or within `tolerance_relative` of its
+    value where that is more.
     """
 
     name: str

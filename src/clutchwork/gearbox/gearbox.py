@@ -139,7 +139,7 @@ class Gearbox(Definition):
     def mechanical_points(self, mode: str) -> list[operating.MechanicalPoint]:
         """The ratios at which a machine of a split stands, so that all power goes mechanically, from low to high gear.
 
-        UseError for a row that is no split.
+        UseError for a row that is not a split.
         """
         found = self.combination(self.gears.get(mode, ()))
         if mode not in self.gears or self.combination(self.closed_in(mode)).kind != motion.SPLIT:

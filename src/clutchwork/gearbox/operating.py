@@ -10,7 +10,7 @@ from clutchwork.base.classes import dataclass
 from clutchwork.base.errors import UseError
 from clutchwork.base.quote import listed, quote
 from clutchwork.declare.rational import Row, eliminate, exact
-from clutchwork.gearbox.balance import GIVEN, LOAD, BalanceRows, Solution, Unknown, no_losses
+from clutchwork.gearbox.balance import GIVEN, LOAD, BalanceRows, BalanceSolution, UnknownTorque, no_losses
 from clutchwork.gearbox.gear_set import HOUSING
 from clutchwork.gearbox.motion import speeds as free_speeds
 
@@ -105,7 +105,7 @@ def operating_point(box: Definition, closed: tuple[str, ...], mode: str, wanted:
     turning = _speeds(box, closed, wanted.speeds)
     found = _torques(box, closed, turning, wanted)
     machines = {
-        name: wanted.machines[name] if name in wanted.machines else found.value(Unknown(name, "machine"))
+        name: wanted.machines[name] if name in wanted.machines else found.value(UnknownTorque(name, "machine"))
         for name in box.machines
     }
     load = -wanted.output_torque if wanted.output_torque is not None else found.value(LOAD)
@@ -127,7 +127,7 @@ def operating_point(box: Definition, closed: tuple[str, ...], mode: str, wanted:
         closed=closed,
         speeds=_floats(turning),
         slips={e.name: float(_of(turning, e.follower) - _of(turning, e.base)) for e in open_},
-        torques={name: _float(found.value(Unknown(name, ""))) for name in closed},
+        torques={name: _float(found.value(UnknownTorque(name, ""))) for name in closed},
         input_torque=float(wanted.torque),
         output_torque=-_float(load),
         machine_torques=_floats(torques),
@@ -160,9 +160,8 @@ def _speeds(box: Definition, closed: tuple[str, ...], known: Exact) -> dict[str,
         rest = solving.rest(row)
         if rest.keys() - {GIVEN}:
             open_ = [box.members[place] for place in free if place not in solving.solved]
-            raise UseError(
-                CALL, [f"speeds are left free: give {listed([_asked(box, member) for member in open_])} too"]
-            )
+            asked = listed([_asked(box, one) for one in open_])
+            raise UseError(CALL, [f"speeds are left free: give {asked} too"])
         found[member] = rest.get(GIVEN, ZERO)
     return found
 
@@ -173,7 +172,7 @@ def _asked(box: Definition, member: str) -> str:
     return usual.get(member, f"speeds={{{quote(member)}: ...}}")
 
 
-def _torques(box: Definition, closed: tuple[str, ...], turning: Exact, wanted: Wanted) -> Solution:
+def _torques(box: Definition, closed: tuple[str, ...], turning: Exact, wanted: Wanted) -> BalanceSolution:
     """Torques from the balance of all members, and of the electric power: equations (4) to (6), and (12)."""
     rows = BalanceRows(box, closed, no_losses(box))
     rows.act(box.input, wanted.torque)
@@ -181,8 +180,8 @@ def _torques(box: Definition, closed: tuple[str, ...], turning: Exact, wanted: W
     electric: Row = {GIVEN: -(wanted.battery_power or ZERO)}
     for name, member in box.machines.items():
         torque = wanted.machines.get(name)
-        rows.act(member, Unknown(name, "machine") if torque is None else torque)
-        column = rows.column(Unknown(name, "machine")) if torque is None else GIVEN
+        rows.act(member, UnknownTorque(name, "machine") if torque is None else torque)
+        column = rows.column(UnknownTorque(name, "machine")) if torque is None else GIVEN
         electric[column] = electric.get(column, ZERO) + turning[member] * (ONE if torque is None else torque)
     if wanted.battery_power is not None:
         rows.rows.append({column: value for column, value in electric.items() if value})

@@ -20,7 +20,7 @@ from clutchwork.gearbox.gear_set import HOUSING
 from clutchwork.schematic.pen import around
 
 if TYPE_CHECKING:
-    from clutchwork.diagrams.shown import AtWork, Shown
+    from clutchwork.diagrams.shown import BoxAtWork, Drawable
     from clutchwork.gearbox.definition import Definition
 
 # px: to the names of levers, to the speeds below, length of the longest arrow
@@ -28,7 +28,7 @@ NAMES, PANEL, LONGEST = 20.0, 44.0, 90.0
 ROW, BESIDE, BOLD = 15.0, 8.0, 1.12  # px: between rows of names, beside a name; how much wider bold letters are
 
 
-def painted(box: Definition, drawn: Levers, at_work: AtWork) -> list[Mark]:
+def painted(box: Definition, drawn: Levers, at_work: Drawable) -> list[Mark]:
     """All marks of a lever diagram."""
     now = shown(at_work)
     scene, pen = Scene(box, drawn.plan, now), Pen()
@@ -72,7 +72,7 @@ def _draw_lever(pen: Pen, scene: Scene, one: Hung, body: Body) -> None:
         pen.label(x + 7.0, y - 8.2, one.lever.label(member), SMALL, GREY, anchor="start")
 
 
-def _draw_speeds(pen: Pen, now: Shown, drawn: Levers) -> None:
+def _draw_speeds(pen: Pen, now: BoxAtWork, drawn: Levers) -> None:
     """Each lever once more, with the speed of each of its members as an arrow, all to one scale."""
     speeds = {HOUSING: 0.0, **now.speeds}
     most = max(abs(speeds[member]) for one in drawn.hung for member in one.heights)

@@ -12,7 +12,7 @@ from clutchwork.diagrams.stick.layout import Layout
 from clutchwork.gearbox.gear_set import HOUSING
 
 if TYPE_CHECKING:
-    from clutchwork.diagrams.shown import Shown
+    from clutchwork.diagrams.shown import BoxAtWork
     from clutchwork.gearbox.definition import Definition
 
 THIN, THICK, MOST = 1.5, 2.6, 1.25  # px: width without power, more at power 1, power from which on it grows no more
@@ -25,7 +25,7 @@ class Scene:
 
     box: Definition
     plan: Layout
-    now: Shown | None
+    now: BoxAtWork | None
 
     def at(self, node: Node) -> Point:
         """Where a node of the grid is [px]."""

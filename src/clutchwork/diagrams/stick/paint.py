@@ -15,13 +15,13 @@ from clutchwork.diagrams.title import draw_legend, draw_title
 from clutchwork.schematic.pen import around
 
 if TYPE_CHECKING:
-    from clutchwork.diagrams.shown import AtWork
+    from clutchwork.diagrams.shown import Drawable
     from clutchwork.gearbox.definition import Definition
 
 BELOW = 18.0  # px from the centre line to names of sets
 
 
-def painted(box: Definition, plan: Layout, at_work: AtWork) -> list[Mark]:
+def painted(box: Definition, plan: Layout, at_work: Drawable) -> list[Mark]:
     """All marks of a stick diagram."""
     now = shown(at_work)
     scene, pen = Scene(box, plan, now), Pen()
