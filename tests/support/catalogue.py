@@ -16,6 +16,8 @@ FOLDER = Path(clutchwork.gearbox.__file__).parent / "catalogue"
 NAMES = sorted(path.stem for path in FOLDER.glob("*.toml"))
 # with a row in which two speeds are free
 SPLITS = ("gm-2ml70", "toyota-p112", "toyota-p410")
+# with two clutches and a synchroniser for each gear: the shaft whose clutch is open turns freely
+DUAL = ("vw-dq200", "vw-dq250")
 # singular values of these small matrices lie above 1e-3 of the largest, or at rounding
 SMALL = 1e-9
 
@@ -46,7 +48,8 @@ def set_rows(entry: Mapping[str, Any]) -> Iterator[Row]:
         yield [(entry["ring"], zr), (entry["small_sun"], -small), (entry["carrier"], small - zr)]
     else:
         assert kind == "gear", kind
-        yield [(entry["first"], entry["teeth_first"]), (entry["second"], entry["teeth_second"])]
+        sizes = (1.0, entry["ratio"]) if "ratio" in entry else (entry["teeth_first"], entry["teeth_second"])
+        yield [(entry["first"], sizes[0]), (entry["second"], sizes[1])]
 
 
 class Box:

@@ -160,6 +160,7 @@ class ShiftTable(NamedTuple):
     freewheels: tuple[str, ...]
     gears: Mapping[str, tuple[str, ...]]  # gear -> closed elements
     ratios: Mapping[str, float | None]  # gear -> speed of the input over that of the output, None in neutral
+    waiting: tuple[str, ...] = ()  # synchronisers, which may be in beside a gear: they wait behind an open clutch
 
 
 class DeclarationType(type):

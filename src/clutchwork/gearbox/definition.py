@@ -16,12 +16,13 @@ ELEMENTS = {
     "brake": "friction brake between a member and the housing",
     "freewheel": "lets the second member run ahead of the first one, and holds it otherwise",
     "dog": "teeth that mesh, between two members or a member and the housing",
+    "synchroniser": "a cone that brings the second member to the speed of the first one, then teeth that mesh",
 }
 
 
 @dataclass(frozen=True)
 class ShiftElement:
-    """A clutch, brake, freewheel or dog clutch of a gearbox, between a member and another one or the housing.
+    """A clutch, brake, freewheel, dog clutch or synchroniser of a gearbox, between two members or one and the housing.
 
     The slip of a brake is the speed of its member, that of the others the speed of the second member over the first.
     Of a freewheel the second member may run ahead of the first.

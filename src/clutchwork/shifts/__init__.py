@@ -6,6 +6,7 @@ from clutchwork.shifts.comfort import jerk, vibration_dose
 from clutchwork.shifts.controller import ShiftController
 from clutchwork.shifts.detect import Shift, shifts_of
 from clutchwork.shifts.drive import Sensed, drive
+from clutchwork.shifts.dual_clutch import DualClutch, DualClutchSettings, DualClutchShift, drive_dual_clutch
 from clutchwork.shifts.exchange import Exchange, exchanges
 from clutchwork.shifts.fault_results import Fault, FaultResult, FaultTable
 from clutchwork.shifts.faults import fault_table, single_faults
@@ -19,6 +20,9 @@ from clutchwork.shifts.settings import ShiftSettings
 from clutchwork.shifts.survey import Survey, Surveyed, neighbours, survey
 
 __all__ = [
+    "DualClutch",
+    "DualClutchSettings",
+    "DualClutchShift",
     "Exchange",
     "Fault",
     "FaultResult",
@@ -36,6 +40,7 @@ __all__ = [
     "Survey",
     "Surveyed",
     "drive",
+    "drive_dual_clutch",
     "exchanges",
     "fault_table",
     "gears_of",
