@@ -15,6 +15,7 @@ PICTURES: dict[str, tuple[str, str, str | None, bool]] = {
     "merged": ("chrysler-62te", "lever", None, True),
     "plan": ("ford-aode", "speeds", None, False),
     "chart": ("zf-6hp26", "chart", None, False),
+    "dual_clutch": ("vw-dq250", "axes", "3", False),
 }
 
 
@@ -33,6 +34,8 @@ def write(folder: Path) -> list[Path]:
         cw.diagram(box, kind, gear=gear, merged=merged, path=folder / f"{name}.svg")
     for name, (known, kind, mode, (speed, torque, output_speed)) in POINTS.items():
         loaded = cw.Gearbox.load(known)
-        point = loaded.operating_point(mode, speed=speed, torque=torque, output_speed=output_speed)
+        point = loaded.operating_point(
+            mode, speed=speed, torque=torque, output_speed=output_speed
+        )
         cw.diagram(loaded, kind, point=point, path=folder / f"{name}.svg")
     return [folder / f"{name}.svg" for name in (*PICTURES, *POINTS)]

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 import clutchwork as cw
-from clutchwork.shifts.preselect import Layout, expected
+from clutchwork.shifts.preselect import Halves, expected
 
 UP, DOWN = [(0.0, 200.0), (1.0, 300.0)], [(0.0, 100.0), (1.0, 130.0)]
 DSG = ("vw-dq200", "vw-dq250")
@@ -31,7 +31,7 @@ def car(name: str, speed: float = 0.0, gear: str | None = None) -> cw.Driveline:
 
 @pytest.mark.parametrize("name", DSG)
 def test_two_halves(name: str) -> None:
-    layout = Layout.of(cw.Gearbox.load(name))
+    layout = Halves.of(cw.Gearbox.load(name))
     assert layout.forward == [str(n) for n in range(1, len(layout.forward) + 1)]
     assert {layout.clutch[gear] for gear in layout.forward[::2]} == {"K1"}
     assert {layout.clutch[gear] for gear in layout.forward[1::2]} == {"K2"}
@@ -41,13 +41,13 @@ def test_two_halves(name: str) -> None:
     assert layout.route("2", "4") == ["3", "4"]
     assert layout.route("5", "1") in (["2", "1"], ["3", "1"], ["4", "1"])
     with pytest.raises(cw.UseError, match="is not one clutch and one synchroniser"):
-        Layout.of(cw.Gearbox.load("zf-8hp70"))
+        Halves.of(cw.Gearbox.load("zf-8hp70"))
 
 
 @pytest.mark.parametrize("name", DSG)
 def test_the_gear_that_is_asked_for_waits(name: str) -> None:
     """100 random cycles of speed and throttle without jumps: what is asked for had been chosen the instant before."""
-    layout = Layout.of(cw.Gearbox.load(name))
+    layout = Halves.of(cw.Gearbox.load(name))
     schedule = cw.shifts.ShiftSchedule.of(cw.Gearbox.load(name), UP, DOWN)
     rng, made = np.random.default_rng(5), 0
     for _ in range(100):
@@ -72,7 +72,7 @@ def test_the_gear_that_is_asked_for_waits(name: str) -> None:
 def test_time_of_synchronisation(name: str, gear: str) -> None:
     """A cone brings a free shaft and its wheels to speed: t = J dw / T."""
     box = cw.Gearbox.load(name)
-    layout, wheel = Layout.of(box), f"w{gear}"
+    layout, wheel = Halves.of(box), f"w{gear}"
     d = cw.Driveline("free shaft")
     engine, axle = d.shaft("engine", inertia=1.0, speed=0.0), d.shaft("axle", speed=20.0)
     gearbox = cw.Transmission("gearbox", gearbox=box, input=engine, output=axle, inertia=0.002)

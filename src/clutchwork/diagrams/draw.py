@@ -11,6 +11,8 @@ from clutchwork.base.errors import UseError, near
 from clutchwork.base.paths import path_fault
 from clutchwork.base.quote import listed, quote
 from clutchwork.declare.calls import explained
+from clutchwork.diagrams.axes import paint as parallel
+from clutchwork.diagrams.axes.layout import axes, fits
 from clutchwork.diagrams.kinds import KINDS
 from clutchwork.diagrams.lever import paint as lever
 from clutchwork.diagrams.lever.layout import layout as lever_layout
@@ -45,12 +47,12 @@ def diagram(
 
     Use it to see how a gearbox is built and where power goes in a gear.
 
-    Parameters: box, a Gearbox, or what `cw.Gearbox.load` takes; kind, "stick", the half section of papers, "lever",
-    levers with distances by the teeth, "speeds", the speed plan after Kutzbach, or "chart", the speed of every member;
-    gear, its name or the elements that are closed: what turns with power, as wide as the power, what is held, what is
-    idle, of the others the speeds; point, an operating point of a power split in place of a gear, for stick and lever
-    diagrams; path, an SVG file, written when given; merged, whether gear sets that share two
-    members are one lever. UseError for what does not fit.
+    Parameters: box, a Gearbox, or what `cw.Gearbox.load` takes; kind, "stick", the half section of papers, "axes",
+    shafts beside each other with their wheels, of gear pairs alone, "lever", levers with distances by the teeth,
+    "speeds", the speed plan after Kutzbach, or "chart", the speed of every member; gear, its name or the elements that
+    are closed: what turns with power, as wide as the power, what is held, what is idle, of the others the speeds;
+    point, an operating point of a power split in place of a gear, for stick and lever diagrams; path, an SVG file,
+    written when given; merged, whether gear sets that share two members are one lever. UseError for what does not fit.
 
     Sources: K. Kutzbach, Mehrgliedrige Radgetriebe und ihre Gesetze, Maschinenbau 22 (1927); H. Benford and M. Leising,
     The lever analogy: a new tool in transmission analysis, SAE 810102 (1981), doi:10.4271/810102.
@@ -63,6 +65,10 @@ def diagram(
     now = None if gear is None else box.state(gear)
     title = f"{box.title or box.name}, {kind}" + (f", gear {now.gear or listed(now.closed)}" if now else "")
     title += f", {point.mode or listed(point.closed)}" if point else ""
+    if kind == "axes" and not fits(box):
+        raise UseError(
+            "cw.diagram", [f"{box.name} has planetary sets, and axes shows gear pairs: choose stick or lever"]
+        )
     if kind in ("speeds", "chart") and not box.states():
         raise UseError("cw.diagram", [f"{box.name} has no gears, and {kind} shows gears: choose stick or lever"])
     if kind in LEVERS and not any(map(_has_lever, box.sets)):
@@ -105,6 +111,8 @@ def _has_lever(one: GearSet) -> bool:
 
 def _marks(box: Gearbox, kind: str, now: GearState | OperatingPoint | None, merged: bool) -> list[Mark]:
     drawn = with_machines(box)
+    if kind == "axes":
+        return parallel.painted(box, axes(box), now)
     if kind == "stick":
         return stick.painted(drawn, stick_layout(drawn), now)
     states = list(box.states().values())

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 from clutchwork.base.classes import dataclass
 from clutchwork.base.errors import UseError, near
 from clutchwork.base.quote import quote
-from clutchwork.shifts.preselect import Layout, expected
+from clutchwork.shifts.preselect import Halves, expected
 
 if TYPE_CHECKING:
     from clutchwork.gearbox.gearbox import Gearbox
@@ -96,7 +96,7 @@ class DualClutch:
         launch: bool = False,
     ) -> None:
         """A controller at the start of a run."""
-        self.layout = Layout.of(box)
+        self.layout = Halves.of(box)
         if gear not in self.layout.clutch:
             known = list(self.layout.clutch)
             raise UseError(

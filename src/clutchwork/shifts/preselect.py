@@ -18,7 +18,7 @@ SLEEVES = ("synchroniser", "dog")
 
 
 @dataclass(frozen=True)
-class Layout:
+class Halves:
     """The two halves of a dual-clutch gearbox, by gear.
 
     Parameters: clutch, the clutch of each gear; sleeve, the synchroniser or dog that engages it; shaft, the member
@@ -31,7 +31,7 @@ class Layout:
     ratios: Mapping[str, float]
 
     @classmethod
-    def of(cls, box: Gearbox) -> Layout:
+    def of(cls, box: Gearbox) -> Halves:
         """The halves of a gearbox; UseError where a gear is not one clutch and one sleeve, or clutches are not two."""
         clutch, sleeve = dict[str, str](), dict[str, str]()
         for gear in box.ratios:
@@ -71,7 +71,7 @@ class Layout:
         return [between, target]
 
 
-def expected(layout: Layout, schedule: ShiftSchedule, gear: str, output_speed: float, throttle: float) -> str:
+def expected(layout: Halves, schedule: ShiftSchedule, gear: str, output_speed: float, throttle: float) -> str:
     """The gear to wait on the free shaft: the neighbour whose line is nearer, in the ratio of speeds.
 
     A speed that moves on without a jump passes the middle between both lines before it crosses one of them, so the gear
