@@ -25,6 +25,7 @@ PUBLIC = [
     *("Gearbox", "HeatFlow", "Hint", "Hints", "Interrupted", "Law", "Loss", "Losses"),
     *("ModelError", "ModelWarning", "Node", "OptionError", "Options", "Problem", "Rate", "Signal", "SimulationError"),
     *("Simulator", "State", "StateError"),
+    *("Bearing", "Churning", "Oil", "OilPump", "OpenPlates", "Seal"),
     *("StoppedEarly", "SupplyPower", "System", "ThermalNode", "Trajectory", "UnknownName", "UseError"),
     *(
         "compare",

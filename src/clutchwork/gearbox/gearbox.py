@@ -16,7 +16,7 @@ from clutchwork.base.verbs import do
 from clutchwork.base.writing import put
 from clutchwork.declare.calls import explain, explained, explained_methods
 from clutchwork.declare.rational import exact
-from clutchwork.gearbox import analysis, checks, motion, operating, store
+from clutchwork.gearbox import analysis, checks, losses, motion, operating, store
 from clutchwork.gearbox.definition import Definition
 from clutchwork.gearbox.reader import plain
 from clutchwork.gearbox.state import GearState, state
@@ -146,6 +146,27 @@ class Gearbox(Definition):
             splits = [name for name in self.gears if self.combination(self.closed_in(name)).kind == motion.SPLIT]
             raise UseError("box.mechanical_points", [f"{quote(mode)} is not a split; {_known(splits)}"])
         return operating.mechanical_points(self, found.closed)
+
+    def loss_map(
+        self,
+        gear: str,
+        *,
+        speeds: Sequence[float],
+        torques: Sequence[float],
+        temperatures: Sequence[float],
+        oil: losses.Oil,
+        parts: Sequence[losses.LossPart] = (),
+    ) -> losses.LossMap:
+        """Losses of a gear over speed, torque and temperature: meshes, and the bearings, seals, plates and pumps given.
+
+        Use it for the losses of a whole box in one table, before anything is simulated. Meshes lose by the `efficiency`
+        of the sets, see `with_efficiency`, in the direction that power takes.
+
+        Parameters: gear; speeds [rad/s] and torques [N m] of the input, negative ones too; temperatures [K] of the oil;
+        oil, a `cw.Oil`; parts: `cw.Bearing`, `cw.Seal`, `cw.OpenPlates`, `cw.Churning`, `cw.OilPump`. UseError for what
+        the box does not have.
+        """
+        return losses.loss_map(self, self.state(gear), (temperatures, speeds, torques), oil, parts)
 
     def with_efficiency(self, efficiency: float) -> Gearbox:
         """The same box whose sets have an efficiency, from wheel to wheel at resting carrier, such as 0.985."""
