@@ -76,6 +76,8 @@ def said(box: Gearbox) -> dict[str, float]:
 
 def _deviation(box: Gearbox) -> str:
     found = said(box)
+    if not box.published:
+        return ""
     return f"{max(abs(found[gear] - wanted) for gear, wanted in box.published.items()):.4f}"
 
 
@@ -85,6 +87,8 @@ def _section(box: Gearbox) -> Iterator[str]:
     live = f'<a href="{LIVE.format(box.name)}">choose a gear</a>'
     yield f"`{box.name}`, {counted(len(box.sets), 'gear sets')}; ratios {form}; {live}.\n"
     yield "| gear | closed | ratio by teeth | published |\n|---|---|---|---|"
+    for row in (row for row in box.gears if row not in box.ratios):
+        yield f"| {row} | {' '.join(box.closed_in(row))} | split | |"
     for gear, ratio in said(box).items():
         published = f"{box.published[gear]:g}" if gear in box.published else ""
         yield f"| {gear} | {' '.join(box.closed_in(gear))} | {ratio:.4f} | {published} |"
@@ -94,4 +98,8 @@ def _section(box: Gearbox) -> Iterator[str]:
         sizes = ", ".join(f"{name.replace('_', ' ')} {size:g}" for name, size in (one.teeth or one.ratios).items())
         yield f"| {one.name} | {one.kind.replace('_', ' ')} | {members} | {sizes} |"
     joins = ", ".join(f"{element.name} {element.first} - {element.second}" for element in box.elements)
-    yield f"\nElements: {joins}.\n\n{box.notes}\n\nSource: {box.source}"
+    if joins:
+        yield f"\nElements: {joins}."
+    if box.machines:
+        yield f"\nMachines: {', '.join(f'{name} on {member}' for name, member in box.machines.items())}."
+    yield f"\n{box.notes}\n\nSource: {box.source}"

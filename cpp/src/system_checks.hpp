@@ -181,7 +181,7 @@ inline bool offsets_in_range(const System& s) {
                       within(s.contact_input, nc, 0, s.n_input_refs) &&
                       within(s.contact_law_input, nc, 0, s.n_input_refs);
   return params && states && inputs && within(s.prescribed_input, s.prescribed, 0, s.inputs - 1) &&
-         within(s.input_refs, s.n_input_refs, 0, s.inputs + s.shared + 2 * (ne + nc) - 1);
+         within(s.input_refs, s.n_input_refs, 0, s.inputs + s.shared + 3 * (ne + nc) - 1);
 }
 
 /// Whether the ways of the elements follow each other, those of one with the same offsets.

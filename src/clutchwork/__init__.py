@@ -19,7 +19,7 @@ from importlib import import_module
 from typing import Any
 
 from clutchwork.base.errors import near
-from clutchwork.declare import HeatFlow, Node, Rate, ThermalNode
+from clutchwork.declare import HeatFlow, Node, Rate, SupplyPower, ThermalNode
 from clutchwork.declare.calls import explain
 from clutchwork.declare.core import core
 from clutchwork.declare.docs import document
@@ -31,7 +31,7 @@ __version__ = "0.1.0"
 
 with_each(document)
 with_each(explain)
-for _made in (HeatFlow, Node, Rate, ThermalNode):
+for _made in (HeatFlow, Node, Rate, SupplyPower, ThermalNode):
     explain(_made)
 
 

@@ -18,7 +18,8 @@ from clutchwork.gearbox.gear_set import HOUSING
 from support import drawings
 from support.drawn_gearboxes import BOXES
 
-ALL = sorted(BOXES)
+# both show gears, which a power split may not have
+ALL = sorted(name for name, box in BOXES.items() if box.states())
 
 
 @pytest.mark.parametrize("name", ALL)

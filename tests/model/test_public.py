@@ -25,7 +25,8 @@ PUBLIC = [
     *("Gearbox", "HeatFlow", "Hint", "Hints", "Interrupted", "Law", "Loss", "Losses"),
     *("ModelError", "ModelWarning", "Node", "OptionError", "Options", "Problem", "Rate", "Signal", "SimulationError"),
     *("Simulator", "Simulators", "State", "StateError"),
-    *("StoppedEarly", "System", "ThermalNode", "Trajectory", "UnknownName", "UseError"),
+    *("Bearing", "Churning", "Oil", "OilPump", "OpenPlates", "Seal"),
+    *("StoppedEarly", "SupplyPower", "System", "ThermalNode", "Trajectory", "UnknownName", "UseError"),
     *(
         "compare",
         "diagram",

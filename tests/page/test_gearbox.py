@@ -25,9 +25,10 @@ def test_every_gearbox_of_the_catalogue_has_its_numbers(name, no_pictures):
     data = pages.gearbox_data(box)
     # JSON has no word for what is not a number
     json.dumps(data, allow_nan=False)
-    assert [gear["name"] for gear in data["gears"]] == list(box.gears)
+    # a split is shown where a machine stands
+    assert dict.fromkeys(gear["name"].partition(",")[0] for gear in data["gears"]) == dict.fromkeys(box.gears)
     for gear in data["gears"]:
-        assert gear["ratio"] == box.ratios[gear["name"]]
+        assert gear["name"] not in box.gears or gear["ratio"] == box.ratios[gear["name"]]
         # power in is power out, without losses
         assert gear["speeds"][box.input] == pytest.approx(1.0)
         assert gear["speeds"][box.output] * gear["ratio"] == pytest.approx(1.0)

@@ -11,11 +11,16 @@ import clutchwork as cw
 from support.shift_car import survey
 
 WHOLE = ("six-speed", "zf-8hp70", "ford-10r80")
-# hubs and the power split have no reverse gear and no shift controller
-LEFT_OUT = ("nexus7", "sa-af", "sa-aw", "sa-sprinter7", "toyota-p410")
+# hubs and power splits have no reverse gear and no shift controller, dual clutches one of their own
+LEFT_OUT = (
+    *("nexus7", "sa-af", "sa-aw", "sa-sprinter7", "toyota-p410", "toyota-p112", "gm-2ml70"),
+    *("vw-dq200", "vw-dq250"),
+)
 BOXES = cw.catalogue()
 AUTOMATICS = [
-    name for name, box in BOXES.items() if any(ratio < 0.0 for gear, ratio in box.ratios.items() if gear[0] == "R")
+    name
+    for name, box in BOXES.items()
+    if name not in LEFT_OUT and any(ratio < 0.0 for gear, ratio in box.ratios.items() if gear[0] == "R")
 ]
 LONGEST = 1.5  # s
 

@@ -11,7 +11,12 @@ import clutchwork as cw
 from support.amount import amount
 from support.shift_car import SENSED, car
 
-BOXES = {name: box for name, box in cw.catalogue().items() if any(gear[0] == "R" for gear in box.gears)}
+# dual clutches have a controller of their own
+BOXES = {
+    name: box
+    for name, box in cw.catalogue().items()
+    if any(gear[0] == "R" for gear in box.gears) and "synchroniser" not in {one.kind for one in box.elements}
+}
 # s; every shift is over by then, whatever its calibration
 UNTIL = 8.0
 

@@ -14,6 +14,10 @@ import clutchwork.gearbox
 
 FOLDER = Path(clutchwork.gearbox.__file__).parent / "catalogue"
 NAMES = sorted(path.stem for path in FOLDER.glob("*.toml"))
+# with a row in which two speeds are free
+SPLITS = ("gm-2ml70", "toyota-p112", "toyota-p410")
+# with two clutches and a synchroniser for each gear: the shaft whose clutch is open turns freely
+DUAL = ("vw-dq200", "vw-dq250")
 # singular values of these small matrices lie above 1e-3 of the largest, or at rounding
 SMALL = 1e-9
 
@@ -44,7 +48,8 @@ def set_rows(entry: Mapping[str, Any]) -> Iterator[Row]:
         yield [(entry["ring"], zr), (entry["small_sun"], -small), (entry["carrier"], small - zr)]
     else:
         assert kind == "gear", kind
-        yield [(entry["first"], entry["teeth_first"]), (entry["second"], entry["teeth_second"])]
+        sizes = (1.0, entry["ratio"]) if "ratio" in entry else (entry["teeth_first"], entry["teeth_second"])
+        yield [(entry["first"], sizes[0]), (entry["second"], sizes[1])]
 
 
 class Box:
@@ -52,10 +57,10 @@ class Box:
 
     def __init__(self, content: Mapping[str, Any]) -> None:
         self.content = content
-        self.elements = {n: e["members"] if isinstance(e, dict) else e for n, e in content["elements"].items()}
+        self.elements = {n: e["members"] if isinstance(e, dict) else e for n, e in content.get("elements", {}).items()}
         self.kinds = {
             name: entry["type"] if isinstance(entry, dict) else "brake" if "housing" in entry else "clutch"
-            for name, entry in content["elements"].items()
+            for name, entry in content.get("elements", {}).items()
         }
         sets = [row for entry in content["sets"].values() for row in set_rows(entry)]
         named = [content["input"], content["output"], *(m for row in sets for m, _ in row)]

@@ -7,6 +7,7 @@ from typing import Any
 from hypothesis import strategies as st
 
 import clutchwork as cw
+from clutchwork.diagrams.machines import with_machines
 
 from .gearboxes import EIGHT_SPEED, changed
 
@@ -48,7 +49,7 @@ KINDS = {
 }  # fmt: skip
 
 OWN = {one["name"]: cw.Gearbox.from_dict(one) for one in (EIGHT, LEPELLETIER, KINDS)}
-BOXES = {**OWN, **cw.catalogue()}
+BOXES = {**OWN, **{name: with_machines(box) for name, box in cw.catalogue().items()}}
 
 KINDS_OF_SETS = ("single", "single", "double", "stepped", "two_suns", "ravigneaux")
 PORTS = {

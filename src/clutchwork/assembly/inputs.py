@@ -28,7 +28,7 @@ SPEED = Spec("signal", "rad/s", "speed")
 # what the temperature of an ambient is, which has no declaration of its own
 TEMPERATURE = Spec("signal", "K", "temperature of an ambient", above=0.0)
 # what an input may be, in the order of the numbers of its references
-SORTS = ("input", "shared", "rate", "heat")
+SORTS = ("input", "shared", "rate", "heat", "supply")
 
 
 @dataclass
@@ -99,7 +99,8 @@ class Wires:
 
     def arrays(self) -> dict[str, Any]:
         """References and the pieces of all signals, one after another."""
-        sizes = (len(self.inputs), len(self.places.shared), len(self.places.directions))
+        acting = len(self.places.directions)
+        sizes = (len(self.inputs), len(self.places.shared), acting, acting)
         base = dict(zip(SORTS, accumulate(sizes, initial=0), strict=True))
         pieces = [item.signal.segments() for item in self.inputs]
         counts = [len(part) for part in pieces]

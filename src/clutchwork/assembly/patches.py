@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from clutchwork.assembly.inputs import plain_signal
-from clutchwork.declare.node import Component, HeatFlow, Node, Rate, ThermalNode, is_reference
+from clutchwork.declare.node import DIRECT, Component, Node, ThermalNode, is_reference
 from clutchwork.declare.schema import Role, inputs, specs
 from clutchwork.model.parts import is_open, is_stop, role
 from clutchwork.model.pools import Pools
@@ -77,7 +77,7 @@ def _referred(element: Component) -> Iterator[str]:
     for entry in element.entries():
         yield from _referred(entry.made) if entry.made is not None else ()
     for value in (*vars(element).values(), *(vars(element.friction).values() if element.friction else ())):
-        target = value.of if isinstance(value, Rate | HeatFlow) else value[0] if _is_state(value) else value
+        target = value.of if isinstance(value, DIRECT) else value[0] if _is_state(value) else value
         if isinstance(target, Component | ThermalNode):
             yield target.name
 

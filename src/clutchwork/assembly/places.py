@@ -6,8 +6,11 @@ from collections.abc import Mapping, Sequence
 from typing import Any
 
 from clutchwork.base.classes import dataclass
-from clutchwork.declare.node import Component, HeatFlow, Node, Rate, ThermalNode
+from clutchwork.declare.node import DIRECT, Component, HeatFlow, Node, Rate, SupplyPower, ThermalNode
 from clutchwork.model.parts import sensor_name, state_name
+
+# what of a direction a reference reads
+READS = {Rate: "rate", HeatFlow: "heat", SupplyPower: "supply", Node: "rate"}
 
 
 @dataclass(frozen=True)
@@ -19,10 +22,10 @@ class SharedNumbers:
 
     def of(self, value: Any) -> tuple[str, int]:
         """Sort and number of a reference; ambients are excluded, their temperature is a signal."""
-        if isinstance(value, Rate | HeatFlow | Node):
+        if isinstance(value, (Node, *DIRECT)):
             acting = value if isinstance(value, Node) else value.of
             name = sensor_name(acting) if isinstance(acting, Node) else acting.name
-            return "heat" if isinstance(value, HeatFlow) else "rate", self.directions[name]
+            return READS[type(value)], self.directions[name]
         return "shared", self.shared[state_name(value)]
 
 

@@ -31,7 +31,7 @@ COUNTS = (
     ("segments", "segments of all signals"),
     ("params", "numbers in the parameter pool"),
     ("points", "points in the curve pool"),
-    ("input_refs", "references from components to signals, shared states, rates and heats"),
+    ("input_refs", "references from components to signals, shared states, rates, heats and supplied powers"),
     ("basis_entries", "shares of speeds in node speeds that are not zero"),
     ("mass_entries", "entries of the mass matrix that are not zero"),
     ("element_rate_entries", "shares of speeds in the rates of elements that are not zero"),

@@ -160,6 +160,7 @@ class ShiftTable(NamedTuple):
     freewheels: tuple[str, ...]
     gears: Mapping[str, tuple[str, ...]]  # gear -> closed elements
     ratios: Mapping[str, float | None]  # gear -> speed of the input over that of the output, None in neutral
+    waiting: tuple[str, ...] = ()  # synchronisers, which may be in beside a gear: they wait behind an open clutch
 
 
 class DeclarationType(type):
@@ -513,10 +514,28 @@ class HeatFlow:
     of: Element
 
 
+@dataclass(frozen=True)
+class SupplyPower:
+    """Power that an electric motor draws from its supply, work and losses, as an input of a process [W].
+
+    Use it as a load of a `cw.Battery`; it is negative where the motor charges.
+
+    Parameters:
+        of (element, required): the motor whose power it is
+    """
+
+    of: Element
+
+
+# what reads a direction rather than a signal or a state
+DIRECT = (Rate, HeatFlow, SupplyPower)
+
 # what a composite is made of
 Part: TypeAlias = "Component | Node | ThermalNode"
 # what an input accepts
-SignalLike: TypeAlias = "float | Signal | ThermalNode | Element | tuple[Element, str] | Node | Rate | HeatFlow"
+SignalLike: TypeAlias = (
+    "float | Signal | ThermalNode | Element | tuple[Element, str] | Node | Rate | HeatFlow | SupplyPower"
+)
 # (x, y) pairs of a curve
 Points: TypeAlias = "Sequence[tuple[float, float]]"
 # what may be given for a number, and for pairs of them
@@ -533,4 +552,4 @@ def is_reference(value: object) -> bool:
     """Whether an input is given by another component or node."""
     if isinstance(value, tuple):
         return len(value) == 2 and isinstance(value[0], Component) and isinstance(value[1], str)
-    return isinstance(value, ThermalNode | Component | Node | Rate | HeatFlow)
+    return isinstance(value, (ThermalNode, Component, Node, *DIRECT))

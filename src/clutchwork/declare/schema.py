@@ -236,7 +236,7 @@ def signal(
 ) -> Any:
     """An input: a number, a Signal, a thermal node (its temperature), a process (its first state), or (process, state).
 
-    It may be a shaft (its speed), and that of flows and processes `Rate` and `HeatFlow` of an element.
+    It may be a shaft (its speed), and that of flows and processes `Rate`, `HeatFlow` and `SupplyPower` of an element.
     The C++ functions get them by name, as `at.input[Input::pressure]`.
 
     Bounds hold for what the model knows in advance: a number, and every value that a Signal takes at or after 0 s. What

@@ -69,6 +69,10 @@ TABLE: dict[str, tuple[float, Powers]] = {
     "K": (1.0, (0, 0, 0, 0, 1, 0)),
     "A": (1.0, (0, 0, 0, 0, 0, 1)),
     "mA": (1e-3, (0, 0, 0, 0, 0, 1)),
+    "Ah": (3600.0, (0, 0, 1, 0, 0, 1)),
+    "V": (1.0, (1, 2, -3, 0, 0, -1)),
+    "ohm": (1.0, (1, 2, -3, 0, 0, -2)),
+    "mohm": (1e-3, (1, 2, -3, 0, 0, -2)),
 }
 
 
@@ -136,5 +140,8 @@ QUANTITIES = (
     UnitGroup("mass flow", "kg/s", ("0.1 kg/s", "6 kg/min")),
     UnitGroup("volume flow", "m3/s", ("1e-4 m3/s", "6 L/min")),
     UnitGroup("electric current", "A", ("0.8 A", "800 mA")),
+    UnitGroup("electric charge", "A s", ("6.5 Ah", "23400 A s")),
+    UnitGroup("voltage", "V", ("200 V",)),
+    UnitGroup("electrical resistance", "ohm", ("0.3 ohm", "300 mohm")),
     UnitGroup("density", "kg/m3", ("7800 kg/m3", "7.8 t/m3")),
 )

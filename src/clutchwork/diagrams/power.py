@@ -8,15 +8,15 @@ from typing import TYPE_CHECKING
 from clutchwork.gearbox.gear_set import HOUSING
 
 if TYPE_CHECKING:
+    from clutchwork.diagrams.shown import BoxAtWork
     from clutchwork.gearbox.definition import Definition
-    from clutchwork.gearbox.state import GearState
 
 # who puts power into a member: a set and its port, an element, input or output
 Source = tuple[str, str]
 INPUT, OUTPUT = ("", "input"), ("", "output")
 
 
-def sources(box: Definition, now: GearState) -> dict[str, dict[Source, float]]:
+def sources(box: Definition, now: BoxAtWork) -> dict[str, dict[Source, float]]:
     """Power per power 1 at the input that each member takes up at each place; those of a member add up to zero."""
     found: dict[str, dict[Source, float]] = {member: {} for member in box.members}
     for one in box.sets:
@@ -30,8 +30,8 @@ def sources(box: Definition, now: GearState) -> dict[str, dict[Source, float]]:
         for member, sign in ((element.follower, 1.0), (element.base, -1.0)):
             if member != HOUSING:
                 found[member][name, ""] = sign * torque * now.speeds[member]
-    found[box.input][INPUT] = now.speeds[box.input]
-    found[box.output][OUTPUT] = _known(now.load) * now.speeds[box.output]
+    found[box.input][INPUT] = now.given
+    found[box.output][OUTPUT] = -_known(now.taken)
     return found
 
 

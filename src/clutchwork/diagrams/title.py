@@ -10,22 +10,15 @@ from clutchwork.diagrams.marks import GREY, INK, NAME, TITLE, Pen
 from clutchwork.schematic.pen import Rect
 
 if TYPE_CHECKING:
+    from clutchwork.diagrams.shown import BoxAtWork
     from clutchwork.gearbox.definition import Definition
-    from clutchwork.gearbox.state import GearState
 
 
-def gear_text(now: GearState) -> str:
-    """A gear in words."""
-    name = f"gear {now.gear}" if now.gear else "closed: " + ", ".join(now.closed)
-    return f"{name}, ratio {now.ratio:.3f}".replace("-", "\N{MINUS SIGN}")
-
-
-def draw_title(pen: Pen, box: Rect, what: Definition, now: GearState | None) -> None:
+def draw_title(pen: Pen, box: Rect, what: Definition, now: BoxAtWork | None) -> None:
     """Name of the gearbox and gear above what is drawn."""
     high = box.low - 14.0
     if now is not None:
-        closed = f"{gear_text(now)}: {', '.join(now.closed)} closed" if now.gear else gear_text(now)
-        pen.label(box.left, high, closed, NAME, GREY, anchor="start")
+        pen.label(box.left, high, now.caption, NAME, GREY, anchor="start")
         high -= 16.0
     pen.label(box.left, high, what.title or what.name, TITLE, INK, bold=True, anchor="start")
 

@@ -5,7 +5,20 @@ from __future__ import annotations
 from collections.abc import Iterable
 from math import pi, sin
 
-from clutchwork.declare import Component, Law, Node, Role, SignalLike, ThermalNode, component, law, param, port, signal
+from clutchwork.declare import (
+    Component,
+    Law,
+    Node,
+    Role,
+    SignalLike,
+    ThermalNode,
+    component,
+    law,
+    option,
+    param,
+    port,
+    signal,
+)
 from clutchwork.elements.bases.geometry import Found
 from clutchwork.elements.bases.heating import Heating
 from clutchwork.elements.dog_clutch import DogClutch, gap_problems
@@ -39,9 +52,16 @@ class Synchroniser(Heating):
     speed: float = param("rad/s", "slip above which the sleeve is held back", default=1.0, above=0.0)
     lag: float = param("s", "time constant of the sleeve", default=0.02, above=0.0)
     command: SignalLike = signal("1", "wanted position of the sleeve: 1 forward, 0 neutral, -1 backward")
+    engaged: bool = option("1", "the forward gear is in mesh at the start", default=False, flag=True)
+    engaged_backward: bool = option("1", "the backward gear is in mesh at the start", default=False, flag=True)
 
     def problems(self) -> Found:
-        return gap_problems(self.gap, self.teeth)
+        found = gap_problems(self.gap, self.teeth)
+        if self.engaged and self.engaged_backward:
+            found.append(("engaged_backward", "is given together with engaged", "one sleeve is in one gear"))
+        if self.engaged_backward and self.backward is None:
+            found.append(("engaged_backward", "needs a backward gear", "give `backward`"))
+        return found
 
     def parts(self) -> Iterable[Component | ThermalNode]:
         """A cone and a dog clutch for each gear."""
@@ -78,6 +98,7 @@ class Synchroniser(Heating):
             pointed=True,
             reversed=reversed_,
             command=self.command,
+            engaged=self.engaged_backward if reversed_ else self.engaged,
             heat=self.heat,
             heat_share=self.heat_share,
         )

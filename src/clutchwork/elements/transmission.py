@@ -259,4 +259,5 @@ class Transmission(TabledComposite, Heating):
         ways = [e.made.name for e in self._entries if e.made is not None and e.made.one_way]
         gears = {gear: tuple(own[name] for name in box.closed_in(gear)) for gear in box.gears}
         ends = (f"{self.name}.{box.input}", f"{self.name}.{box.output}")
-        return ShiftTable(self.name, *ends, tuple(own.values()), tuple(ways), frozen(gears), ratios(box))
+        waiting = tuple(own[element.name] for element in box.elements if element.kind == "synchroniser")
+        return ShiftTable(self.name, *ends, tuple(own.values()), tuple(ways), frozen(gears), ratios(box), waiting)

@@ -5,12 +5,12 @@ from __future__ import annotations
 from collections.abc import Callable, Container, Iterator, Mapping, Sequence
 from typing import Any
 
-from clutchwork.declare.node import Component, HeatFlow, Node, Rate, ThermalNode
+from clutchwork.declare.node import Component, HeatFlow, Node, Rate, SupplyPower, ThermalNode
 from clutchwork.model.components import component_problems
 from clutchwork.model.parts import Parts, take_apart
 
 Entry = Mapping[str, Any]
-REFERENCES = {"rate": Rate, "heat_flow": HeatFlow}
+REFERENCES = {"rate": Rate, "heat_flow": HeatFlow, "supply_power": SupplyPower}
 
 
 class References(Container[str]):

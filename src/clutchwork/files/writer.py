@@ -12,9 +12,10 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from clutchwork.base.errors import Problem
-from clutchwork.declare.node import HeatFlow, Rate, is_reference
+from clutchwork.declare.node import DIRECT, is_reference
 from clutchwork.declare.schema import Spec, specs
 from clutchwork.declare.wording import path_of
+from clutchwork.files.references import REFERENCES
 from clutchwork.files.values import element_kinds, is_path
 from clutchwork.fmu_import.output import Output
 from clutchwork.model.numbers import At
@@ -137,8 +138,9 @@ def _reference(value: Any) -> Any:
     """An input that another component gives: its name, or a table."""
     if isinstance(value, tuple):
         return {"of": value[0].name, "state": value[1]}
-    if isinstance(value, Rate | HeatFlow):
-        return {"type": "rate" if isinstance(value, Rate) else "heat_flow", "of": value.of.name}
+    if isinstance(value, DIRECT):
+        kind = next(name for name, cls in REFERENCES.items() if isinstance(value, cls))
+        return {"type": kind, "of": value.of.name}
     return value.name
 
 

@@ -8,7 +8,7 @@ from math import sqrt
 from typing import TYPE_CHECKING, NamedTuple
 
 from clutchwork.base.classes import dataclass
-from clutchwork.declare.rational import Row, eliminate, exact
+from clutchwork.declare.rational import Echelon, Row, eliminate, exact
 from clutchwork.gearbox.gear_set import HOUSING, GearSet
 
 if TYPE_CHECKING:
@@ -36,19 +36,23 @@ class Balance:
     load: Fraction | None
 
 
-class _Unknown(NamedTuple):
-    """A torque that is looked for: at a wheel of a set, of an element, or of the load."""
+class UnknownTorque(NamedTuple):
+    """A torque that is looked for: at a wheel of a set, of an element, of a machine, or of the load."""
 
     owner: str
     port: str
 
 
+LOAD = UnknownTorque("", "load")
+
+
 def ideal_balance(box: Definition, closed: tuple[str, ...]) -> Balance:
     """Torques of a gear without losses."""
-    return _solve(box, closed, _no_losses(box))
+    return _solve(box, closed, no_losses(box))
 
 
-def _no_losses(box: Definition) -> Factors:
+def no_losses(box: Definition) -> Factors:
+    """Meshes that lose nothing."""
     return {one.name: (ONE,) * len(one.wheels) for one in box.sets}
 
 
@@ -58,7 +62,7 @@ def lossy_balance(box: Definition, closed: tuple[str, ...], speeds: Mapping[str,
     A mesh takes less out of the planets than it puts in, or the other way: which it is follows from the torques
     themselves, so patterns are tried until one agrees with itself.
     """
-    factors = _no_losses(box)
+    factors = no_losses(box)
     for _ in range(MOST_TRIES):
         made = _solve(box, closed, factors)
         found = {one.name: _factors(one, made, speeds) for one in box.sets}
@@ -82,48 +86,81 @@ def _factors(one: GearSet, made: Balance, speeds: Mapping[str, Fraction]) -> tup
 
 
 def _solve(box: Definition, closed: tuple[str, ...], factors: Factors) -> Balance:
-    """Balance of each member and of the planets of each set: equations (4) to (6)."""
-    unknown = [_Unknown(one.name, wheel.port) for one in box.sets for wheel in one.shape.wheels]
-    unknown += [_Unknown(name, "") for name in closed] + [_Unknown("", "load")]
-    place = {key: column for column, key in enumerate(unknown)}
-    members: dict[str, Row] = {member: {} for member in box.members}
-    rows: list[Row] = []
-    for one in box.sets:
-        planets: Row = {}
-        for wheel, size, factor in zip(one.shape.wheels, one.speeds_of_planets(), factors[one.name], strict=True):
-            column = place[_Unknown(one.name, wheel.port)]
-            planets[column] = factor / size
-            _add(members, one.members[wheel.port], column, ONE)
-            _add(members, one.carrier, column, -ONE)
-        rows.append(planets)
-    for name in closed:
-        element = box.element(name)
-        _add(members, element.follower, place[_Unknown(name, "")], ONE)
-        _add(members, element.base, place[_Unknown(name, "")], -ONE)
-    _add(members, box.output, place[_Unknown("", "load")], ONE)
-    _add(members, box.input, GIVEN, ONE)
-    echelon = eliminate([*rows, *members.values()], range(len(unknown)), traced=False)
+    """Torques per torque 1 at the input."""
+    rows = BalanceRows(box, closed, factors)
+    rows.act(box.input, ONE)
+    rows.act(box.output, LOAD)
+    found = rows.solved()
+    return Balance(found.sets(box), {name: found.value(UnknownTorque(name, "")) for name in closed}, found.value(LOAD))
 
-    def value(key: _Unknown) -> Fraction | None:
-        row = echelon.solved.get(place[key])
-        if row is None or any(column not in (GIVEN, place[key]) for column in row):
+
+class BalanceRows:
+    """Balance of each member and of the planets of each set, with what acts from outside: equations (4) to (6)."""
+
+    def __init__(self, box: Definition, closed: tuple[str, ...], factors: Factors) -> None:
+        """What sets and closed elements do; outside of them nothing acts yet."""
+        self.places: dict[UnknownTorque, int] = {}
+        self.members: dict[str, Row] = {member: {} for member in box.members}
+        self.rows: list[Row] = []
+        for one in box.sets:
+            planets: Row = {}
+            for wheel, size, factor in zip(one.shape.wheels, one.speeds_of_planets(), factors[one.name], strict=True):
+                column = self.column(UnknownTorque(one.name, wheel.port))
+                planets[column] = factor / size
+                self._add(one.members[wheel.port], column, ONE)
+                self._add(one.carrier, column, -ONE)
+            self.rows.append(planets)
+        for name in closed:
+            element, column = box.element(name), self.column(UnknownTorque(name, ""))
+            self._add(element.follower, column, ONE)
+            self._add(element.base, column, -ONE)
+
+    def column(self, key: UnknownTorque) -> int:
+        """The column of an unknown torque."""
+        return self.places.setdefault(key, len(self.places))
+
+    def act(self, member: str, torque: UnknownTorque | Fraction) -> None:
+        """A torque from outside on a member, known or not."""
+        if isinstance(torque, UnknownTorque):
+            self._add(member, self.column(torque), ONE)
+        else:
+            self._add(member, GIVEN, torque)
+
+    def solved(self) -> BalanceSolution:
+        """The torques that follow."""
+        rows = [*self.rows, *self.members.values()]
+        return BalanceSolution(self.places, eliminate(rows, range(len(self.places)), traced=False))
+
+    def _add(self, member: str, column: int, value: Fraction) -> None:
+        """Add a torque to the balance of a member; the housing carries what it must."""
+        if member == HOUSING:
+            return
+        row = self.members[member]
+        row[column] = row.get(column, ZERO) + value
+        if not row[column]:
+            del row[column]
+
+
+class BalanceSolution(NamedTuple):
+    """Torques that follow from a balance."""
+
+    places: Mapping[UnknownTorque, int]
+    echelon: Echelon
+
+    def value(self, key: UnknownTorque) -> Fraction | None:
+        """A torque; None where the balance leaves it open."""
+        place = self.places[key]
+        row = self.echelon.solved.get(place)
+        if row is None or any(column not in (GIVEN, place) for column in row):
             return None
         return -row.get(GIVEN, ZERO)
 
-    sets = {
-        one.name: _ports(one, {w.port: value(_Unknown(one.name, w.port)) for w in one.shape.wheels}) for one in box.sets
-    }
-    return Balance(sets, {name: value(_Unknown(name, "")) for name in closed}, value(_Unknown("", "load")))
-
-
-def _add(members: dict[str, Row], member: str, column: int, value: Fraction) -> None:
-    """Add a torque to the balance of a member; the housing carries what it must."""
-    if member == HOUSING:
-        return
-    row = members[member]
-    row[column] = row.get(column, ZERO) + value
-    if not row[column]:
-        del row[column]
+    def sets(self, box: Definition) -> dict[str, Mapping[str, Fraction | None]]:
+        """Torques at the ports of all sets."""
+        return {
+            one.name: _ports(one, {w.port: self.value(UnknownTorque(one.name, w.port)) for w in one.shape.wheels})
+            for one in box.sets
+        }
 
 
 def _ports(one: GearSet, wheels: dict[str, Fraction | None]) -> dict[str, Fraction | None]:

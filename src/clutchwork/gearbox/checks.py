@@ -9,7 +9,17 @@ from clutchwork.base.errors import Problem, near
 from clutchwork.base.quote import listed, quote
 from clutchwork.declare.rational import eliminate
 from clutchwork.gearbox.gear_set import HOUSING
-from clutchwork.gearbox.motion import GEAR, INPUT_HELD, NEUTRAL, OUTPUT_HELD, TIE_UP, Combination, combination, speeds
+from clutchwork.gearbox.motion import (
+    GEAR,
+    INPUT_HELD,
+    NEUTRAL,
+    OUTPUT_HELD,
+    SPLIT,
+    TIE_UP,
+    Combination,
+    combination,
+    speeds,
+)
 from clutchwork.gearbox.state import state
 from clutchwork.gearbox.teeth import teeth_problems
 
@@ -55,7 +65,10 @@ def _name_problems(box: Definition) -> Iterator[Problem]:
             yield Problem(f'{what} "{name}"', "", "appears twice", remedy="give each its own name")
     shared = {one.name for one in box.sets} & {element.name for element in box.elements}
     taken = shared | set(box.members) & ({one.name for one in box.sets} | {e.name for e in box.elements})
-    named = [*(one.name for one in box.sets), *(element.name for element in box.elements), *box.gears]
+    # a machine may have the name of its member
+    taken |= {name for name in box.machines if name in shared or name in {one.name for one in box.sets}}
+    taken |= {name for name in box.machines if name in {element.name for element in box.elements}}
+    named = [*(one.name for one in box.sets), *(element.name for element in box.elements), *box.gears, *box.machines]
     for name in dict.fromkeys(name for name in named if name in ("", HOUSING)):
         yield Problem("gearbox", "", f"{quote(name)} cannot name a set, an element or a gear", remedy="rename it")
     for name in sorted(taken):
@@ -83,6 +96,11 @@ def _member_problems(box: Definition) -> Iterator[Problem]:
             remedy = f"write {HOUSING!r}, all small, for what never turns"
             yield Problem("gearbox", "", f"{quote(member)} is not the name of a member", remedy=remedy)
     ends = {box.input, box.output, HOUSING, *box.shafts}
+    for name, member in box.machines.items():
+        if member not in places:
+            meant = near(member, places)
+            fault = f"is not a member of any set or element{meant}"
+            yield Problem(f'machine "{name}"', "", fault, quote(member), _known(places))
     for name in ("input", "output"):
         member = getattr(box, name)
         if member not in places and member != HOUSING:
@@ -172,6 +190,8 @@ def _gear_problems(box: Definition, gear: str) -> Iterator[Problem]:
                 f"is not {'neutral' if gear == 'N' else 'park'}: closing {_named(found)} makes {_a(found.kind)}{ratio}"
             )
             yield Problem(path, "", fault, remedy="correct the row or rename it")
+        return
+    if found.kind == SPLIT or (box.machines and found.kind == INPUT_HELD and found.dof == 1):
         return
     fault, remedy = _fault(box, found)
     if fault:

@@ -16,12 +16,13 @@ ELEMENTS = {
     "brake": "friction brake between a member and the housing",
     "freewheel": "lets the second member run ahead of the first one, and holds it otherwise",
     "dog": "teeth that mesh, between two members or a member and the housing",
+    "synchroniser": "a cone that brings the second member to the speed of the first one, then teeth that mesh",
 }
 
 
 @dataclass(frozen=True)
 class ShiftElement:
-    """A clutch, brake, freewheel or dog clutch of a gearbox, between a member and another one or the housing.
+    """A clutch, brake, freewheel, dog clutch or synchroniser of a gearbox, between two members or one and the housing.
 
     The slip of a brake is the speed of its member, that of the others the speed of the second member over the first.
     Of a freewheel the second member may run ahead of the first.
@@ -61,9 +62,10 @@ class Definition:
     """What makes up a gearbox, as its users write it down.
 
     Parameters: sets, gear sets; shafts, members that may turn freely in a gear, or that one element alone names;
-    elements, shift elements; gears, which elements are closed in each gear; always_closed, elements that a shift table
-    leaves out; published, ratio by gear as its maker says it, of the `ratio_form` "in/out" or "out/in", met within
-    `tolerance`, or within `tolerance_relative` of its value where that is more.
+    elements, shift elements; machines, the member that each electric machine turns with; gears, which elements are
+    closed in each gear; always_closed, elements that a shift table leaves out; published, ratio by gear as its maker
+    says it, of the `ratio_form` "in/out" or "out/in", met within `tolerance`, or within `tolerance_relative` of its
+    value where that is more.
     """
 
     name: str
@@ -72,6 +74,7 @@ class Definition:
     output: str
     elements: tuple[ShiftElement, ...]
     gears: Mapping[str, tuple[str, ...]]
+    machines: Mapping[str, str] = field(default_factory=dict)
     title: str = ""
     shafts: tuple[str, ...] = ()
     always_closed: tuple[str, ...] = ()
@@ -84,7 +87,8 @@ class Definition:
 
     def __post_init__(self) -> None:
         """Tables that never change, so that a gearbox has a hash."""
-        vars(self).update(gears=frozen(self.gears), published=frozen(self.published))
+        tables = ("gears", "published", "machines")
+        vars(self).update({name: frozen(getattr(self, name)) for name in tables})
 
     @property
     def members(self) -> tuple[str, ...]:
@@ -92,6 +96,7 @@ class Definition:
         named = [self.input, self.output]
         named += [member for one in self.sets for member in one.members.values()]
         named += [member for element in self.elements for member in element.members]
+        named += self.machines.values()
         return tuple(member for member in dict.fromkeys([*named, *self.shafts]) if member != HOUSING)
 
     def element(self, name: str) -> ShiftElement:

@@ -15,7 +15,8 @@ from clutchwork.base.quote import listed, quote
 from clutchwork.base.verbs import do
 from clutchwork.base.writing import put
 from clutchwork.declare.calls import explain, explained, explained_methods
-from clutchwork.gearbox import analysis, checks, motion, store
+from clutchwork.declare.rational import exact
+from clutchwork.gearbox import analysis, checks, losses, motion, operating, store
 from clutchwork.gearbox.definition import Definition
 from clutchwork.gearbox.reader import plain
 from clutchwork.gearbox.state import GearState, state
@@ -96,6 +97,76 @@ class Gearbox(Definition):
                 "box.state", [f"{listed(closed) or 'nothing'} closed make {kind}, not a gear; close other elements"]
             )
         return found
+
+    def operating_point(
+        self,
+        mode: str | Sequence[str],
+        *,
+        torque: float,
+        speed: float | None = None,
+        output_speed: float | None = None,
+        speeds: Mapping[str, float] | None = None,
+        machines: Mapping[str, float] | None = None,
+        output_torque: float | None = None,
+        battery_power: float | None = 0.0,
+    ) -> operating.OperatingPoint:
+        """Every speed, torque and power of a power split, from speed and torque of the engine; no losses.
+
+        Use it for rows with two speeds that are free, and for hybrids in a gear. What is known must be as much as the
+        mode leaves free: a split has two speeds, and torques of two machines that follow from balance and battery.
+
+        Parameters: mode, a row of the shift table or closed elements; torque [N m] and speed [rad/s] of the input;
+        output_speed [rad/s]; speeds [rad/s], of other members; machines, torques [N m] of machines that are known, by
+        name; output_torque [N m], on what the output drives; battery_power [W], what the machines draw together, None
+        where it is to follow. UseError where that is too little, or too much.
+        """
+        if isinstance(mode, str) and mode not in self.gears:
+            meant = near(mode, self.gears, _known(self.gears))
+            raise UseError("box.operating_point", [f"{quote(mode)} is not a row of the shift table{meant}"])
+        named = isinstance(mode, str)
+        closed = self.closed_in(mode) if isinstance(mode, str) else self._elements("box.operating_point", mode)
+        members = dict.fromkeys(self.members)
+        known = {self.input: speed, self.output: output_speed, **(speeds or {})}
+        wanted = operating.Wanted(
+            operating.exactly({name: value for name, value in known.items() if value is not None}, members, "member"),
+            exact(torque),
+            None if output_torque is None else exact(output_torque),
+            operating.exactly(machines or {}, self.machines, "machine"),
+            None if battery_power is None else exact(battery_power),
+        )
+        return operating.operating_point(self, closed, str(mode) if named else "", wanted)
+
+    def mechanical_points(self, mode: str) -> list[operating.MechanicalPoint]:
+        """The ratios at which a machine of a split stands, so that all power goes mechanically, from low to high gear.
+
+        UseError for a row that is not a split.
+        """
+        found = self.combination(self.gears.get(mode, ()))
+        if mode not in self.gears or self.combination(self.closed_in(mode)).kind != motion.SPLIT:
+            splits = [name for name in self.gears if self.combination(self.closed_in(name)).kind == motion.SPLIT]
+            raise UseError("box.mechanical_points", [f"{quote(mode)} is not a split; {_known(splits)}"])
+        return operating.mechanical_points(self, found.closed)
+
+    def loss_map(
+        self,
+        gear: str,
+        *,
+        speeds: Sequence[float],
+        torques: Sequence[float],
+        temperatures: Sequence[float],
+        oil: losses.Oil,
+        parts: Sequence[losses.LossPart] = (),
+    ) -> losses.LossMap:
+        """Losses of a gear over speed, torque and temperature: meshes, and the bearings, seals, plates and pumps given.
+
+        Use it for the losses of a whole box in one table, before anything is simulated. Meshes lose by the `efficiency`
+        of the sets, see `with_efficiency`, in the direction that power takes.
+
+        Parameters: gear; speeds [rad/s] and torques [N m] of the input, negative ones too; temperatures [K] of the oil;
+        oil, a `cw.Oil`; parts: `cw.Bearing`, `cw.Seal`, `cw.OpenPlates`, `cw.Churning`, `cw.OilPump`. UseError for what
+        the box does not have.
+        """
+        return losses.loss_map(self, self.state(gear), (temperatures, speeds, torques), oil, parts)
 
     def with_efficiency(self, efficiency: float) -> Gearbox:
         """The same box whose sets have an efficiency, from wheel to wheel at resting carrier, such as 0.985."""

@@ -13,7 +13,7 @@ from clutchwork.declare.rational import ONE, Echelon, Row, eliminate
 if TYPE_CHECKING:
     from clutchwork.gearbox.definition import Definition
 
-GEAR, NEUTRAL, TIE_UP = "gear", "neutral", "tie-up"
+GEAR, NEUTRAL, TIE_UP, SPLIT = "gear", "neutral", "tie-up", "split"
 INPUT_HELD, OUTPUT_HELD = "input held", "output held"
 
 
@@ -22,7 +22,8 @@ class Combination:
     """What a gearbox does with some of its elements closed.
 
     `kind`: "gear", where input and output keep one ratio and both turn; "input held" and "output held", where one
-    cannot turn and the other can; "tie-up", where neither can; "neutral", where both are free of each other.
+    cannot turn and the other can; "tie-up", where neither can; "neutral", where both are free of each other; "split",
+    where they are so but for a machine that turns with both, two speeds are free, and power goes two ways.
     """
 
     closed: tuple[str, ...]
@@ -69,6 +70,8 @@ def combination(box: Definition, closed: Collection[str]) -> Combination:
     # the input and the output are solved for last, so one of them follows from the other alone or is free
     moved = [_free(echelon, place) for place in (0, 1)]
     kind, ratio = _kind(*moved)
+    if kind == NEUTRAL and dof == 2 and _splits(box, echelon):
+        kind = SPLIT
     wanted = {frozenset(box.closed_in(gear)): gear for gear in reversed(list(box.gears))}
     return Combination(names, kind, dof, redundant, ratio, wanted.get(frozenset(names), ""))
 
@@ -76,6 +79,13 @@ def combination(box: Definition, closed: Collection[str]) -> Combination:
 def _free(echelon: Echelon, place: int) -> Row:
     row = echelon.solved.get(place)
     return {place: ONE} if row is None else {n: -v for n, v in row.items() if n != place}
+
+
+def _splits(box: Definition, echelon: Echelon) -> bool:
+    """Whether the torque of a machine holds that of the input and that of the output at once."""
+    places = {member: place for place, member in enumerate(box.members)}
+    turning = (_free(echelon, places[member]) for member in box.machines.values() if member in places)
+    return any({0, 1} <= row.keys() for row in turning)
 
 
 def _kind(upper: Row, lower: Row) -> tuple[str, Fraction | None]:

@@ -13,7 +13,7 @@ from clutchwork.gearbox.gear_set import HOUSING, KINDS, GearSet
 
 TOP = (
     *("name", "title", "input", "output", "ratio_form", "tolerance", "tolerance_relative", "source", "notes"),
-    *("shafts", "always_closed", "sets", "elements", "gears", "published"),
+    *("shafts", "always_closed", "sets", "elements", "machines", "gears", "published"),
 )
 FORMS = ("in/out", "out/in")
 # of teeth and of ratios, far above any gear; what follows from them stays within floating-point numbers
@@ -45,6 +45,8 @@ class GearboxReader:
         values["elements"] = tuple(self._elements(self._table(data, "elements")))
         gears = self._table(data, "gears")
         values["gears"] = {name: self._names(row, f'gear "{name}"', "") for name, row in gears.items()}
+        machines = self._table(data, "machines")
+        values["machines"] = {name: self._member({name: member}, name, "machines") for name, member in machines.items()}
         published = self._table(data, "published")
         values["published"] = {
             name: self._number(value, "published", name, zero=False) for name, value in published.items()
@@ -210,6 +212,7 @@ def plain(box: Definition) -> dict[str, Any]:
             data[name] = getattr(box, name)
     data["sets"] = {one.name: _plain_set(one) for one in box.sets}
     data["elements"] = {element.name: _plain_element(element) for element in box.elements}
+    data["machines"] = dict(box.machines)
     data["gears"] = {name: list(row) for name, row in box.gears.items()}
     data["published"] = dict(box.published)
     needed = ("name", "input", "output", "gears")

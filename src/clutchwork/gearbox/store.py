@@ -124,7 +124,7 @@ def _lines(text: str) -> dict[tuple[str, str], int]:
 def _placed(problem: Problem, lines: Mapping[tuple[str, str], int]) -> Problem:
     """A problem with its line in the file."""
     what, _, name = problem.path.partition(' "')
-    tables = {"gear": "gears", "element": "elements", "published": "published", "set": "sets"}
+    tables = {"gear": "gears", "element": "elements", "published": "published", "set": "sets", "machine": "machines"}
     places = [(problem.path, problem.quantity), (problem.path, "")]
     places += [(tables.get(what, ""), name.rstrip('"')), ("", problem.quantity), (problem.quantity, "")]
     return replace(problem, line=next((lines[place] for place in places if place in lines), 0))

@@ -4,12 +4,13 @@ from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Iterable
-from math import isnan
+from math import isfinite, isnan
 from typing import TYPE_CHECKING
 
 from clutchwork.base.plural import columns
 from clutchwork.gearbox.analysis import capacities, states, swaps
-from clutchwork.gearbox.motion import all_combinations
+from clutchwork.gearbox.motion import SPLIT, all_combinations, combination
+from clutchwork.gearbox.operating import mechanical_points
 
 if TYPE_CHECKING:
     from clutchwork.gearbox.definition import Definition
@@ -21,6 +22,7 @@ def summary(box: Definition) -> str:
     parts = [
         ("", f"{box.name}: {box.title or 'gearbox'}\n{sets(box)}"),
         ("gears: x closed; ratio input over output; step to the next gear; efficiency with mesh losses", gears(box)),
+        ("splits: two speeds are free; ratios at which a machine stands, and all power goes mechanically", splits(box)),
         ("speed of members and slip of open elements at speed 1 of the input", speeds(box)),
         ("torque on closed elements at torque 1 of the input, and on the housing", torques(box)),
         ("what elements must hold, at torque 1 of the input", needed(box)),
@@ -55,6 +57,18 @@ def gears(box: Definition) -> str:
         tail = [said, step, f"{one.efficiency:.4f}", f"{one.circulating:.3f}"]
         lines.append([gear, *marks, f"{value:.4f}", *tail])
     return columns(lines, right=range(1 + len(box.elements), len(lines[0])))
+
+
+def splits(box: Definition) -> str:
+    """Rows in which two speeds are free, with their mechanical points."""
+    lines = []
+    for row in box.gears:
+        closed = box.closed_in(row)
+        if combination(box, closed).kind == SPLIT:
+            points = mechanical_points(box, closed)
+            told = [f"{one.machine} at {one.ratio:.4f}" for one in points if isfinite(one.ratio)]
+            lines.append([row, " ".join(closed) or "nothing", ", ".join(told)])
+    return columns([["mode", "closed", "stands"], *lines]) if lines else ""
 
 
 def speeds(box: Definition) -> str:

@@ -16,11 +16,10 @@ from clutchwork.base.errors import ModelError, Problem, near, nearest
 from clutchwork.base.frozen import Frozen
 from clutchwork.base.quote import quote
 from clutchwork.declare.node import (
+    DIRECT,
     Component,
-    HeatFlow,
     Law,
     Node,
-    Rate,
     Signal,
     TabledComposite,
     ThermalNode,
@@ -47,7 +46,7 @@ RESULTS = "speeds, torques, slips and the like are results, which follow from th
 # fields of a mass by the names of a shaft
 PLACES = ("inertia", "speed", "angle")
 # what may be, or refer to, something that is changed
-REFERS = (Node, ThermalNode, Component, Law, Rate, HeatFlow, tuple, Frozen)
+REFERS = (Node, ThermalNode, Component, Law, *DIRECT, tuple, Frozen)
 
 
 @dataclass(frozen=True)
@@ -381,7 +380,7 @@ class Renewed:
         if isinstance(value, Frozen):
             new = Frozen({name: self.of(item) if isinstance(item, REFERS) else item for name, item in value.items()})
             return value if all(new[name] is item for name, item in value.items()) else new
-        return self._fields(given or value) if isinstance(value, Component | Law | Rate | HeatFlow) else value
+        return self._fields(given or value) if isinstance(value, (Component, Law, *DIRECT)) else value
 
     def _part(self, value: Any) -> Any:
         return next((part for part in self.parts.get(value.name, ()) if type(part) is type(value)), value)

@@ -9,7 +9,17 @@ from clutchwork.base.classes import dataclass
 from clutchwork.base.errors import Problem, near
 from clutchwork.base.quote import listed, quote
 from clutchwork.declare import units
-from clutchwork.declare.node import Component, Domain, HeatFlow, Node, Rate, ThermalNode, is_reference
+from clutchwork.declare.node import (
+    DIRECT,
+    Component,
+    Domain,
+    HeatFlow,
+    Node,
+    Rate,
+    SupplyPower,
+    ThermalNode,
+    is_reference,
+)
 from clutchwork.declare.ports import thermal_ports
 from clutchwork.declare.quantity import within
 from clutchwork.declare.schema import Role, Spec, specs
@@ -83,6 +93,7 @@ class Referents:
 
     states: Mapping[str, tuple[str, ...]]  # thermal node or "process.state" -> unit
     acting: frozenset[str]  # torque elements and contacts
+    supplied: frozenset[str]  # those that draw from a supply
     added: Mapping[int, Any]  # shafts, thermal nodes and elements of the driveline by identity
     parts: Mapping[str, Sequence[Any]]  # what elements are made of by name, made anew each time it is asked for
 
@@ -96,11 +107,12 @@ class Referents:
             if role(process) is Role.PROCESS:
                 states |= {f"{process.name}.{s.name}": (s.unit,) for s in type(process).states}
         acting = frozenset(c.name for c in parts.components if role(c) in (Role.TORQUE, Role.CONTACT))
+        supplied = frozenset(c.name for c in parts.components if c.name in acting and c.supply)
         added = {id(thing): thing for thing in (*nodes, *thermal, *elements)}
         inner = dict[str, list[Any]]()
         for part in (part for element in elements for part in all_parts(element)):
             inner.setdefault(part.name, []).append(part)
-        return cls(states, acting, added, inner)
+        return cls(states, acting, supplied, added, inner)
 
     def holds(self, target: Any) -> bool:
         """Whether a shaft, node or element was added itself, or is part of one that was."""
@@ -146,14 +158,14 @@ def _reference(value: Any, spec: Spec, at: At, component: Component, known: Refe
 
 def _may_refer(value: Any, to: Role) -> bool:
     """Whether a component may have such an input: torques know speeds of shafts, but no rates of other torques."""
-    if isinstance(value, Rate | HeatFlow):
+    if isinstance(value, DIRECT):
         return to in (Role.FLOW, Role.PROCESS, Role.COMPOSITE)
     return to is not Role.MOTION
 
 
 def _missing(value: Any, known: Referents) -> tuple[str, str, str] | None:
     """Message, value and remedy where a reference leads nowhere."""
-    direct = isinstance(value, Rate | HeatFlow)
+    direct = isinstance(value, DIRECT)
     target = value.of if direct else value[0] if isinstance(value, tuple) else value
     if not known.holds(target):
         return _foreign(target, value, known)
@@ -161,10 +173,12 @@ def _missing(value: Any, known: Referents) -> tuple[str, str, str] | None:
         return None
     if direct:
         found = target.name in known.acting
+        if found and isinstance(value, SupplyPower) and target.name not in known.supplied:
+            return "draws nothing from a supply", _words(value), "give an electric motor"
         return None if found else ("is not a torque element or contact", _words(value), "give one of them")
     if isinstance(target, Component) and role(target) is not Role.PROCESS:
         names = "a signal, a thermal node or a process"
-        return "has no output", _words(value), f"give {names}, or its Rate or HeatFlow"
+        return "has no output", _words(value), f"give {names}, or its Rate, HeatFlow or SupplyPower"
     if state_name(value) in known.states:
         return None
     own = [name for name in known.states if name.startswith(f"{target.name}.")]
@@ -189,7 +203,7 @@ def _foreign(target: Any, value: Any, known: Referents) -> tuple[str, str, str]:
 
 
 def _unit(value: Any, known: Referents) -> str:
-    if isinstance(value, HeatFlow):
+    if isinstance(value, HeatFlow | SupplyPower):
         return "W"
     target = value.of if isinstance(value, Rate) else value
     if isinstance(target, Node):
@@ -199,6 +213,6 @@ def _unit(value: Any, known: Referents) -> str:
 
 def _words(value: Any) -> str:
     """A reference in words."""
-    if isinstance(value, Rate | HeatFlow):
+    if isinstance(value, DIRECT):
         return f"{type(value).__name__} of {quote(value.of.name)}"
     return quote(value[0].name if isinstance(value, tuple) else value.name)

@@ -112,12 +112,12 @@ def table_of(system: System, name: str = "") -> ShiftTable:
 
 
 def gear_of(table: ShiftTable, closed: Collection[str]) -> str | None:
-    """The gear whose elements are closed; a freewheel that holds beside them changes nothing."""
+    """The gear whose elements are closed; a freewheel that holds or a gear that waits beside them changes nothing."""
     own = frozenset(closed).intersection(table.elements)
     fits = [
         gear
         for gear, row in table.gears.items()
-        if own >= frozenset(row) and own - frozenset(row) <= {*table.freewheels}
+        if own >= frozenset(row) and own - frozenset(row) <= {*table.freewheels, *table.waiting}
     ]
     return max(fits, key=lambda gear: len(table.gears[gear]), default=None)
 
@@ -151,6 +151,8 @@ def _closed(run: Recorded, table: ShiftTable) -> NDArray[np.bool_]:
 def _holds(run: Recorded, name: str) -> NDArray[np.bool_]:
     if f"{name}.mode" in run:
         return np.asarray(run[f"{name}.mode"] == LOCKED)
+    # a synchroniser holds by the dog clutch behind its cone
+    name = name if f"{name}.sleeve" in run else f"{name}.forward_dog"
     element: Any = next((one for one in run.system.elements if one.name == name), None)
     if f"{name}.sleeve" in run:
         return np.asarray(run[f"{name}.sleeve"] > element.reach + BEYOND)

@@ -8,7 +8,7 @@ from typing import Any, NamedTuple
 
 from clutchwork.base.classes import dataclass
 from clutchwork.base.quote import printable, shortened
-from clutchwork.declare.node import Component, HeatFlow, Node, Rate, ThermalNode
+from clutchwork.declare.node import Component, HeatFlow, Node, Rate, SupplyPower, ThermalNode
 from clutchwork.declare.schema import Role, inputs, specs
 from clutchwork.model.components import component_problems
 from clutchwork.model.model import Model
@@ -213,6 +213,8 @@ def referred(value: object) -> str:
         return f"slip of {label(value.of.name)}"
     if isinstance(value, HeatFlow):
         return f"heat of {label(value.of.name)}"
+    if isinstance(value, SupplyPower):
+        return f"supply of {label(value.of.name)}"
     if isinstance(value, Node):
         return f"speed of {label(value.name)}"
     if isinstance(value, ThermalNode):

@@ -8,6 +8,7 @@ from clutchwork.shifts.controller import ShiftController
 from clutchwork.shifts.detect import Shift, shifts_of
 from clutchwork.shifts.diagnosis import diagnose
 from clutchwork.shifts.drive import Sensed, drive
+from clutchwork.shifts.dual_clutch import DualClutch, DualClutchSettings, DualClutchShift, drive_dual_clutch
 from clutchwork.shifts.exchange import Exchange, exchanges
 from clutchwork.shifts.fault_results import Fault, FaultResult, FaultTable
 from clutchwork.shifts.faults import fault_table, single_faults
@@ -24,6 +25,9 @@ from clutchwork.shifts.shift_map import Inhibit, ShiftMap
 from clutchwork.shifts.survey import Survey, Surveyed, neighbours, survey
 
 __all__ = [
+    "DualClutch",
+    "DualClutchSettings",
+    "DualClutchShift",
     "ElementActuator",
     "Exchange",
     "Fault",
@@ -47,6 +51,7 @@ __all__ = [
     "Surveyed",
     "diagnose",
     "drive",
+    "drive_dual_clutch",
     "exchanges",
     "fault_table",
     "fill_test",

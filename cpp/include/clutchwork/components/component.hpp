@@ -208,7 +208,7 @@ concept ProcessElement = requires(const typename E::template Params<double>& p, 
 
 /// Process, or flow, that changes between smooth pieces by its states and inputs: `margin` is positive inside
 /// `at.piece` and tells who is closest to leaving; `cross` gives the next piece and may move states. A margin does not
-/// look at heats.
+/// look at heats and supplied powers.
 template <class E>
 concept SwitchingProcess =
     requires(const typename E::template Params<double>& p, const At<double>& at, double* state, int& who) {

@@ -243,9 +243,12 @@ void whole_shared(const FullForm<T>& form, const Whole<S>& e) {
   whole_heats(form, e);
   for (int i = 0; i < ws.in.n_direction_refs; ++i) {
     const int ref = ws.in.direction_ref[i];
-    bool heat;
-    const int k = branch_behind(ws, ref, heat);
-    e.input[ref] = k < 0 ? S(T(0)) : heat ? e.heat[k] : e.rate[k];
+    Read what;
+    const int k = branch_behind(ws, ref, what);
+    e.input[ref] = k < 0                ? S(T(0))
+                   : what == Read::rate ? e.rate[k]
+                   : what == Read::heat ? e.heat[k]
+                                        : e.torque[k] * e.rate[k] + e.heat[k];
   }
   S* x = e.d + form.n() - sys.shared;
   for (int h = 0; h < sys.heats; ++h) {

@@ -124,12 +124,24 @@ class LocalDerivatives {
       const int j = code - int(sys_.inputs);
       row[n_.directions + n_.states - sys_.shared + j] += value(factor) * sys_.shared_scale[j];
     } else {
-      bool heat;
-      const int k = branch_behind(ws_, ref, heat);
+      Read what;
+      const int k = branch_behind(ws_, ref, what);
       if (k < 0) return;
-      if (heat) return add_heat(row, factor, k, false);
-      row[ws_.branch[k].direction] += value(factor);
+      if (what == Read::rate) {
+        row[ws_.branch[k].direction] += value(factor);
+        return;
+      }
+      if (what == Read::supply) add_work(row, factor, k);
+      add_heat(row, factor, k, false);
     }
+  }
+
+  /// row += factor * derivatives of the work that branch k does [W]; of an element of one way.
+  void add_work(double* row, T factor, int k) {
+    const int d = ws_.branch[k].direction;
+    const double* own_torque = row_of_torque(d);
+    for (std::int64_t i = 0; i + 1 < n_.columns; ++i) row[i] += value(factor * ws_.observed.rate[k]) * own_torque[i];
+    row[d] += value(factor * ws_.observed.torque[k]);
   }
 
   /// row += factor * derivatives of the heat of branch k [W], and its value where that is wanted.

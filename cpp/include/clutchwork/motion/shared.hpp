@@ -40,25 +40,31 @@ CLUTCHWORK_HOT void inputs_with(Workspace<T>& ws, Real<T> t, const T* state) {
   }
 }
 
-/// Where a reference to a rate or a heat points: its branch, -1 while that is locked; `heat` tells which.
+/// What a reference to a direction reads, in the order of their numbers: its rate, its heat, or the power that it draws
+/// from its supply, work and heat.
+enum class Read : int { rate, heat, supply };
+
+/// Where such a reference points: its branch, -1 while that is locked.
 template <class T>
-int branch_behind(const Workspace<T>& ws, int ref, bool& heat) {
+int branch_behind(const Workspace<T>& ws, int ref, Read& what) {
   const auto& sys = ws.sys;
-  int d = sys.input_refs[ref] - int(sys.inputs + sys.shared);
-  heat = d >= ws.n_directions;
-  if (heat) d -= ws.n_directions;
-  const int k = ws.branch_of[d];
+  const int d = sys.input_refs[ref] - int(sys.inputs + sys.shared);
+  what = Read(d / ws.n_directions);
+  const int k = ws.branch_of[d % ws.n_directions];
   return k < ws.n_branches ? k : -1;
 }
 
-/// Rates and heats of directions as inputs of flows and processes.
+/// Rates, heats and supplied powers of directions as inputs of flows and processes.
 template <class T>
 void direction_inputs(Workspace<T>& ws, const T* rate) {
   for (int i = 0; i < ws.in.n_direction_refs; ++i) {
     const int ref = ws.in.direction_ref[i];
-    bool heat;
-    const int k = branch_behind(ws, ref, heat);
-    ws.in.u[ref] = k < 0 ? T(0) : heat ? ws.shared.heat[k] : rate[k];
+    Read what;
+    const int k = branch_behind(ws, ref, what);
+    ws.in.u[ref] = k < 0                ? T(0)
+                   : what == Read::rate ? rate[k]
+                   : what == Read::heat ? ws.shared.heat[k]
+                                        : ws.shared.supply[k];
   }
 }
 
@@ -112,6 +118,7 @@ template <class T>
     } else {
       ws.shared.heat[k] = b.ways == 0 ? T(0) : element_heat(ws, b, rate + k, state + b.state, b.input, torque + k);
     }
+    ws.shared.supply[k] = torque[k] * rate[k] + ws.shared.heat[k];
   }
   direction_inputs(ws, rate);
   for (int h = 0; h < sys.heats; ++h) {
@@ -163,12 +170,14 @@ void torques_by_shared(Workspace<T>& ws, const T* rate, const T* state) {
 template <class T>
 struct SharedRow {
   Workspace<T>& ws;
-  T* dt;  ///< time derivatives of all state rates
+  T* dt;          ///< time derivatives of all state rates
+  const T* rate;  ///< of each branch
   int nx, ns, nd, first;
 
-  explicit SharedRow(Workspace<T>& workspace, T* time)
+  SharedRow(Workspace<T>& workspace, T* time, const T* rates)
       : ws(workspace),
         dt(time),
+        rate(rates),
         nx(int(ws.sys.shared)),
         ns(int(ws.sys.states)),
         nd(ws.n_directions),
@@ -184,6 +193,18 @@ struct SharedRow {
       ws.jacobian.by_shared[i * nx + j] += factor * ws.shared.heat_share[k] * ws.jacobian.torque_by[k * nx + j];
     dt[first + i] += factor * ws.shared.heat_time[k];
   }
+  /// factor times the power that branch k draws from its supply: its work, and its heat.
+  void add_supply(int i, T factor, int k) {
+    const Branch<T>& b = ws.branch[k];
+    const Partial<T>& p = ws.jacobian.partial[k];
+    add_heat(i, factor, k);
+    const T by_torque = factor * rate[k];
+    ws.jacobian.by_rate[i * nd + k] += factor * p.torque + by_torque * p.by_rate;
+    for (int s = 0; s < b.states; ++s)
+      ws.jacobian.by_state[i * ns + b.state + s] += by_torque * ws.jacobian.f_state[b.state + s];
+    for (int j = 0; j < nx; ++j) ws.jacobian.by_shared[i * nx + j] += by_torque * ws.jacobian.torque_by[k * nx + j];
+    dt[first + i] += factor * p.torque * offset_slope(ws, k) + by_torque * p.by_time;
+  }
   /// factor times the input that stands at a reference.
   void add_input(int i, T factor, int ref) {
     const auto& sys = ws.sys;
@@ -195,10 +216,11 @@ struct SharedRow {
       const int j = code - int(sys.inputs);
       ws.jacobian.by_shared[i * nx + j] += factor * T(sys.shared_scale[j]);
     } else {
-      bool heat;
-      const int k = branch_behind(ws, ref, heat);
+      Read what;
+      const int k = branch_behind(ws, ref, what);
       if (k < 0) return;
-      if (heat) return add_heat(i, factor, k);
+      if (what == Read::heat) return add_heat(i, factor, k);
+      if (what == Read::supply) return add_supply(i, factor, k);
       ws.jacobian.by_rate[i * nd + k] += factor;
       dt[first + i] += factor * offset_slope(ws, k);
     }
@@ -277,7 +299,7 @@ template <class T>
   for (int i = 0; i < nx * nd; ++i) ws.jacobian.by_rate[i] = T(0);
   for (int i = 0; i < nx * ns; ++i) ws.jacobian.by_state[i] = T(0);
   for (int i = 0; i < nx * nx; ++i) ws.jacobian.by_shared[i] = T(0);
-  SharedRow<T> row(ws, dt);
+  SharedRow<T> row(ws, dt, rate);
   for (int h = 0; h < sys.heats; ++h) {
     const int k = ws.branch_of[sys.heat_direction[h]];
     if (k >= 0 && k < ws.n_branches) row.add_heat(sys.heat_to[h], T(sys.heat_share[h]), k);

@@ -37,9 +37,10 @@ void place_process_inputs(const Workspace<T>& ws, int first, double t, const T* 
       x = T(sys.shared_offset[j]) + T(sys.shared_scale[j]) * state[place];
       slope = T(sys.shared_scale[j]) * rates[place];
     } else {
-      const int d = j - int(sys.shared), k = d < ws.n_directions ? -1 : ws.branch_of[d - ws.n_directions];
-      if (d < ws.n_directions) x = rate(d, slope);
-      if (k >= 0 && k < ws.n_branches) x = ws.shared.heat[k];
+      Read what;
+      const int k = branch_behind(ws, ref, what);
+      if (what == Read::rate) x = rate(j - int(sys.shared), slope);
+      if (k >= 0 && what != Read::rate) x = what == Read::heat ? ws.shared.heat[k] : ws.shared.supply[k];
     }
     out[i] = Dual<T, 1>(x), out[i].d[0] = slope;
   }

@@ -150,6 +150,7 @@ template <class T>
 struct Shared {
   T *heat = nullptr, *heat_rate = nullptr, *heat_time = nullptr;  ///< of each branch [W], by its rate, by time
   T* heat_share = nullptr;                                        ///< of each branch, by its torque
+  T* supply = nullptr;                                            ///< work and heat of each branch [W]
   T *stage_rate = nullptr, *stage_torque = nullptr;               ///< of each branch at the present stage
   T *reach = nullptr, *inverse = nullptr, *rhs = nullptr;  ///< answer of the motion to a shared state; Schur complement
   int* pivot = nullptr;                                    ///< of its inversion
@@ -160,6 +161,7 @@ struct Shared {
     a.keep(p.piece, n.processes + n.flows, 0, (1ll << 31) - 1);
     const auto nx = n.shared, nd = nx > 0 ? n.directions : 0;
     a.take(p.heat, nd), a.take(p.heat_rate, nd), a.take(p.heat_time, nd), a.take(p.heat_share, nd);
+    a.take(p.supply, nd);
     a.take(p.stage_rate, nd), a.take(p.stage_torque, nd), a.take(p.reach, (n.speeds + n.states) * nx);
     a.take(p.inverse, nx * nx), a.scratch(p.rhs, nx), a.take(p.pivot, nx);
   }

@@ -25,8 +25,8 @@ struct SignalOf {
 
 using Signal = SignalOf<double>;
 
-/// What components read, through references to signals, shared states, rates and heats; the prescribed speeds come
-/// last.
+/// What components read, through references to signals, shared states, and rates, heats and supplied powers of
+/// directions; the prescribed speeds come last.
 template <class T>
 struct Signals {
   SignalOf<Given<T>>* signal = nullptr;
@@ -39,7 +39,7 @@ struct Signals {
   bool expected = false;          ///< values may be set between calls
   T *prescribed = nullptr, *prescribed_slope = nullptr, *prescribed_before = nullptr;
 
-  // references that are no signals: shared states first, then rates and heats of directions
+  // references that are no signals: shared states first, then what directions have
   int *shared_ref = nullptr, *direction_ref = nullptr, *rate_ref = nullptr;
   int n_shared_refs = 0, n_direction_refs = 0;
   int n_rate_refs = 0;  ///< rates of elements, which torques may read in the full form; direction_ref has them too

@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
 from clutchwork.diagrams.letters import width_of
 from clutchwork.diagrams.lever.heights import Hung
 from clutchwork.diagrams.lever.layout import Levers
 from clutchwork.diagrams.marks import GREY, INK, NAME, PAPER, SMALL, Mark, Pen
+from clutchwork.diagrams.shown import shown
 from clutchwork.diagrams.stick.bodies import Body
 from clutchwork.diagrams.stick.lines import draw_lines
 from clutchwork.diagrams.stick.looks import Scene
@@ -18,28 +20,41 @@ from clutchwork.gearbox.gear_set import HOUSING
 from clutchwork.schematic.pen import around
 
 if TYPE_CHECKING:
+    from clutchwork.diagrams.shown import BoxAtWork, Drawable
     from clutchwork.gearbox.definition import Definition
-    from clutchwork.gearbox.state import GearState
 
-NAMES, PANEL, LONGEST = 20.0, 44.0, 90.0  # px: to the names of levers, to the speeds below, length of the longest arrow
+# px: to the names of levers, to the speeds below, length of the longest arrow
+NAMES, PANEL, LONGEST = 20.0, 44.0, 90.0
+ROW, BESIDE, BOLD = 15.0, 8.0, 1.12  # px: between rows of names, beside a name; how much wider bold letters are
 
 
-def painted(box: Definition, drawn: Levers, now: GearState | None) -> list[Mark]:
+def painted(box: Definition, drawn: Levers, at_work: Drawable) -> list[Mark]:
     """All marks of a lever diagram."""
+    now = shown(at_work)
     scene, pen = Scene(box, drawn.plan, now), Pen()
     draw_lines(pen, scene)
     for one, body in zip(drawn.hung, drawn.plan.bodies, strict=True):
         _draw_lever(pen, scene, one, body)
     columns = [scene.at(piece.root)[0] for body in drawn.plan.bodies for piece in body.pieces.values()]
     draw_parts(pen, scene, min(columns), max(columns))
-    for body in drawn.plan.bodies:
-        x, _ = scene.at(next(iter(body.pieces.values())).root)
-        pen.label(x, NAMES, body.name.replace("+", " + "), NAME + 0.5, INK, bold=True)
+    _draw_names(pen, scene, drawn.plan.bodies)
     if now is not None:
         draw_legend(pen, around(pen.marks), LEGEND)
         _draw_speeds(pen, now, drawn)
     draw_title(pen, around(pen.marks), box, now)
     return pen.marks
+
+
+def _draw_names(pen: Pen, scene: Scene, bodies: Sequence[Body]) -> None:
+    """Names of levers below them, in as many rows as it takes."""
+    ends = list[float]()
+    for body in bodies:
+        x, _ = scene.at(next(iter(body.pieces.values())).root)
+        name = body.name.replace("+", " + ")
+        half = width_of(name, NAME + 0.5) / 2 * BOLD
+        row = next((row for row, end in enumerate(ends) if end < x - half), len(ends))
+        ends[row : row + 1] = [x + half + BESIDE]
+        pen.label(x, NAMES + ROW * row, name, NAME + 0.5, INK, bold=True)
 
 
 def _draw_lever(pen: Pen, scene: Scene, one: Hung, body: Body) -> None:
@@ -57,14 +72,14 @@ def _draw_lever(pen: Pen, scene: Scene, one: Hung, body: Body) -> None:
         pen.label(x + 7.0, y - 8.2, one.lever.label(member), SMALL, GREY, anchor="start")
 
 
-def _draw_speeds(pen: Pen, now: GearState, drawn: Levers) -> None:
+def _draw_speeds(pen: Pen, now: BoxAtWork, drawn: Levers) -> None:
     """Each lever once more, with the speed of each of its members as an arrow, all to one scale."""
     speeds = {HOUSING: 0.0, **now.speeds}
     most = max(abs(speeds[member]) for one in drawn.hung for member in one.heights)
     scale = LONGEST / max(most, 1.0)
     box = around(pen.marks)
     x, top = box.left, box.high + PANEL
-    pen.label(x, top - 12.0, f"speeds over that of the input, {scale:.0f} px = 1", NAME, GREY, anchor="start")
+    pen.label(x, top - 12.0, f"speeds over {now.speeds_of}, {scale:.0f} px = 1", NAME, GREY, anchor="start")
     for one in drawn.hung:
         shown = {member: speeds[member] for member in one.heights}
         high = max(one.heights.values())

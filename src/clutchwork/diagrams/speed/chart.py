@@ -8,6 +8,8 @@ from typing import TYPE_CHECKING
 from clutchwork.diagrams.letters import width_of
 from clutchwork.diagrams.marks import FAINT, GREY, HELD, IDLE, INK, NAME, POWER, SMALL, Mark, Pen
 from clutchwork.diagrams.power import sources
+from clutchwork.diagrams.shown import of_gear
+from clutchwork.diagrams.shown import shown as as_shown
 from clutchwork.diagrams.speed.plan import name_of
 from clutchwork.diagrams.title import draw_legend, draw_title
 from clutchwork.schematic.pen import Rect, around
@@ -26,7 +28,7 @@ def painted(box: Definition, states: Sequence[GearState], now: GearState | None)
     shown = [state for state in states if now is None or state.closed == now.closed]
     left = 14.0 + max(width_of(member, NAME) for member in box.members)
     right = left + COLUMN * len(shown)
-    powers = [sources(box, state) for state in shown]
+    powers = [sources(box, of_gear(state)) for state in shown]
     unit = UNIT * min(1.0, 6.0 / max(1.0, *(abs(v) for state in shown for v in state.speeds.values())))
     y = 0.0
     for number, state in enumerate(shown):
@@ -42,7 +44,7 @@ def painted(box: Definition, states: Sequence[GearState], now: GearState | None)
         y += 8.0 + unit * max(0.0, *(-speed for speed in speeds)) + (LEAST if min(speeds) < 0 else 0.0)
     pen.label(left, y + 10.0, "speed over that of the input", SMALL, GREY, anchor="start")
     draw_legend(pen, Rect(0.0, 0.0, right, y + 10.0), LEGEND)
-    draw_title(pen, around(pen.marks), box, now)
+    draw_title(pen, around(pen.marks), box, as_shown(now))
     return pen.marks
 
 

@@ -14,6 +14,7 @@ from clutchwork.base.classes import dataclass
 from clutchwork.diagrams.letters import width_of
 from clutchwork.diagrams.lever.points import Lever, levers
 from clutchwork.diagrams.marks import FAINT, GREY, HELD, INK, NAME, POWER, SMALL, Mark, Pen
+from clutchwork.diagrams.shown import shown
 from clutchwork.diagrams.speed.spread import spread
 from clutchwork.diagrams.title import draw_title
 from clutchwork.gearbox.gear_set import HOUSING
@@ -76,7 +77,7 @@ def painted(box: Definition, states: Sequence[GearState], now: GearState | None)
         _draw_gears(pen, one.columns, speeds, scale, now)
         middle = 0.5 * (min(one.columns.values()) + max(one.columns.values()))
         pen.label(middle, below + 18.0, " + ".join(one.lever.sets), NAME + 0.5, INK, bold=True)
-    draw_title(pen, around(pen.marks), box, now)
+    draw_title(pen, around(pen.marks), box, shown(now))
     return pen.marks
 
 

@@ -12,8 +12,8 @@ from clutchwork.diagrams.stick.layout import Layout
 from clutchwork.gearbox.gear_set import HOUSING
 
 if TYPE_CHECKING:
+    from clutchwork.diagrams.shown import BoxAtWork
     from clutchwork.gearbox.definition import Definition
-    from clutchwork.gearbox.state import GearState
 
 THIN, THICK, MOST = 1.5, 2.6, 1.25  # px: width without power, more at power 1, power from which on it grows no more
 LOST = 1e-9
@@ -25,7 +25,7 @@ class Scene:
 
     box: Definition
     plan: Layout
-    now: GearState | None
+    now: BoxAtWork | None
 
     def at(self, node: Node) -> Point:
         """Where a node of the grid is [px]."""
@@ -42,6 +42,13 @@ class Scene:
     def width(self, power: float) -> float:
         """Width of a line by its power."""
         return THIN + (THICK * min(abs(power), MOST) if abs(power) > LOST else 0.0)
+
+    def gate(self, name: str) -> tuple[str, float]:
+        """Colour and width of the line at the input or the output."""
+        if self.now is None:
+            return INK, self.width(0.0)
+        member, power = (self.box.input, self.now.given) if name == INPUT[1] else (self.box.output, self.now.taken)
+        return self.colour(member, power), self.width(power)
 
     def taken(self) -> dict[str, dict[Node, float]]:
         """Power that enters each member, by node."""

@@ -86,7 +86,7 @@ def _looks(scene: Scene, element: ShiftElement, symbol: ShiftSymbol) -> symbols.
 
 def _draw_gate(pen: Pen, scene: Scene, name: str) -> None:
     x, y = scene.at(scene.plan.gates[name])
-    colour, width = (POWER, scene.width(1.0)) if scene.now else (INK, scene.width(0.0))
+    colour, width = scene.gate(name)
     if name == IN:
         pen.line((x - ARROW, y), (x, y), colour=colour, width=width)
         pen.arrow((x - 6.0, y), (1.0, 0.0), 9.0 + width, colour)

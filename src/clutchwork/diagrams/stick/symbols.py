@@ -10,6 +10,7 @@ from clutchwork.diagrams.marks import IDLE, INK, PAPER, Pen, Point
 # from along and across to a point of the picture
 Place = Callable[[float, float], Point]
 PLATE, LINING = 9.0, 2.6  # half width of plates; half of what is between them
+MACHINE = "machine"
 
 
 class Looks(NamedTuple):
@@ -25,7 +26,7 @@ OPEN = Looks((IDLE, IDLE))
 
 def gap_of(kind: str) -> float:
     """Half of what is between the two sides."""
-    return 5.0 if kind in ("freewheel", "dog") else LINING
+    return {"freewheel": 5.0, "dog": 5.0, MACHINE: 8.0}.get(kind, LINING)
 
 
 def draw(pen: Pen, kind: str, middle: Point, along: Point, reaches: tuple[float, float], looks: Looks) -> None:
@@ -41,6 +42,9 @@ def draw(pen: Pen, kind: str, middle: Point, along: Point, reaches: tuple[float,
     for sign, reach, colour, width in zip((-1.0, 1.0), reaches, looks.sides, looks.widths, strict=True):
         if reach > gap:
             pen.line(at(sign * reach, 0.0), at(sign * gap, 0.0), colour=colour, width=width)
+    if kind == MACHINE:
+        _machine(pen, at, looks)
+        return
     if kind == "freewheel":
         _roller(pen, at, looks)
     elif kind == "dog":
@@ -49,6 +53,14 @@ def draw(pen: Pen, kind: str, middle: Point, along: Point, reaches: tuple[float,
         pen.area(at(-gap, -PLATE), at(gap, -PLATE), at(gap, PLATE), at(-gap, PLATE), fill=looks.between)
     for sign, colour in zip((-1.0, 1.0), looks.sides, strict=True):
         pen.line(at(sign * gap, -PLATE), at(sign * gap, PLATE), colour=colour, width=2.4)
+
+
+def _machine(pen: Pen, at: Place, looks: Looks) -> None:
+    """An electric machine, a circle with its letter."""
+    x, y = at(0.0, 0.0)
+    colour = looks.sides[0] if looks.between == PAPER else looks.between
+    pen.dot(x, y, 8.0, PAPER, colour, 1.8)
+    pen.label(x, y + 3.4, "M", 9.0, colour, bold=True, anchor="middle")
 
 
 def _roller(pen: Pen, at: Place, looks: Looks) -> None:

@@ -7,7 +7,7 @@ from fractions import Fraction
 from math import isfinite
 from typing import Any, TypeAlias
 
-from clutchwork.declare import Found, HeatFlow, Node, Rate, Signal, ThermalNode
+from clutchwork.declare import Found, HeatFlow, Node, Rate, Signal, SupplyPower, ThermalNode
 from clutchwork.signals.bases.waveform import value
 
 # coefficients by port
@@ -41,7 +41,7 @@ def ratio_problems(ratio: Any) -> Found:
     """A ratio that is not finite, or follows the motion at once, so that its rate of change depends on the torque."""
     if isinstance(ratio, Signal) and not isfinite(at_start(ratio)):
         return [("ratio", f"is {at_start(ratio):g} at the start", "give finite and smaller numbers")]
-    if not isinstance(ratio, Node | Rate | HeatFlow | ThermalNode):
+    if not isinstance(ratio, Node | Rate | HeatFlow | SupplyPower | ThermalNode):
         return []
     remedy = "let it pass a RatioActuator, whose state has a rate of its own"
     return [("ratio", "follows the motion without a lag", remedy)]

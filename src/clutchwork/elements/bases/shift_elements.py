@@ -17,7 +17,13 @@ if TYPE_CHECKING:
     from clutchwork.gearbox.definition import Definition, ShiftElement
 
 # kind of a shift element -> that of the element in its place
-KINDS = {"clutch": "clutch", "brake": "brake", "freewheel": "one_way_clutch", "dog": "dog_clutch"}
+KINDS = {
+    "clutch": "clutch",
+    "brake": "brake",
+    "freewheel": "one_way_clutch",
+    "dog": "dog_clutch",
+    "synchroniser": "synchroniser",
+}
 DRAG = "wet_drag"
 # wet paper linings; a law of one's own says more
 LINING = Coulomb(static=0.13, kinetic=0.11)
@@ -27,6 +33,8 @@ RESERVE = 1.5  # capacity at this pressure over the most torque that the element
 LEAST = 0.1
 # a dog clutch of the size of a passenger car
 DOG = {"teeth": 36, "gap": 0.01, "stiffness": 2e5}
+# and such a synchroniser, of brass on steel
+CONE = {"friction": Coulomb(static=0.11, kinetic=0.1), "force": 800.0, "radius": 0.035, "half_angle": 0.12}
 ROLES = (Role.CONTACT, Role.TORQUE, Role.COMPOSITE)
 
 
@@ -71,6 +79,8 @@ def _ports(cls: Any, ends: Ends) -> dict[str, Node] | None:
         return None
     if names == {"base", "follower"}:
         return {"base": ends.base, "follower": ends.follower}
+    if names == {"hub", "forward", "backward"}:
+        return {"hub": ends.base, "forward": ends.follower}
     if names == {"shaft", "base"}:
         return {"base": ends.base, "shaft": ends.follower}
     if names == {"shaft"} and HOUSING in ends:
@@ -104,6 +114,8 @@ def usual(element: ShiftElement, torque: float) -> dict[str, Any]:
     """Values of an element that nobody gave any, for the most torque [N m] that it carries."""
     if element.kind == "dog":
         return dict(DOG)
+    if element.kind == "synchroniser":
+        return dict(CONE)
     if element.kind == "freewheel":
         return {}
     return {"friction": LINING, "gain": RESERVE * torque / (PRESSED * LINING.static)}
