@@ -366,6 +366,21 @@ int hardest_tie(const Ratios<T>& r) {
   return hardest;
 }
 
+/// The locked contact whose direction varies that took most energy there; -1: none.
+template <class T>
+int hardest_contact(const Workspace<T>& ws) {
+  const Ratios<T>& r = ws.ratios;
+  const Tied<T>& w = r.plain;
+  int hardest = -1;
+  double most = 0;
+  for (int t = 0; t < r.ties; ++t) {
+    const double taken = value(w.wanted[t] * w.wanted[t] * w.gram[t * r.ties + t]);
+    if (r.tie[t] >= 0 || !(taken > most)) continue;
+    most = taken, hardest = ws.held.contact[ws.held.n_fixed + r.rows - r.ties + t - 2 * r.n];
+  }
+  return hardest;
+}
+
 /// Speeds y brought onto the ties at the point that was evaluated last, the momentum across them untouched. A
 /// transmission that nothing can keep there, for what ties its speeds is prescribed, or that would have to stop by a
 /// jump what has left its ratio; -1: none. docs/theory/varying-ratios.md (9)
@@ -408,7 +423,11 @@ int settle_ties(Form& form, T* y) {
     const double first = value(rate(2 * a)), second = value(w.ratio[a] * rate(2 * a + 1));
     if (abs(first - second) > 10 * ws.guard.zero + most * (abs(first) + abs(second))) return a;
   }
-  return moved > 1e3 * ws.guard.zero + most_drift * fastest ? hardest_tie(r) : -1;
+  ws.ratios.stopped = -1;
+  if (!(moved > 1e3 * ws.guard.zero + most_drift * fastest)) return -1;
+  const int hardest = hardest_tie(r);
+  if (hardest < 0) ws.ratios.stopped = hardest_contact(ws);
+  return hardest;
 }
 
 /// Product of the row of transmission a at one ratio with its row at another, in the mobility of the reduced speeds.
@@ -424,6 +443,18 @@ bool is_one_way(const Ratios<T>& r, int a) {
   const T* first = r.between + 2 * a * r.rows + 2 * a;
   const double product = value(first[0]) * value(first[r.rows + 1]), mixed = value(first[1]);
   return product - mixed * mixed <= 1e-12 * product;
+}
+
+/// A transmission whose row, which is all that moves what it joins, has turned over since the point that was linearized
+/// last: it has passed a ratio at which nothing keeps it; -1: none. docs/theory/varying-ratios.md (22)
+template <class T>
+int turned_row(const Workspace<T>& ws) {
+  const Ratios<T>& r = ws.ratios;
+  for (int t = 0; t < r.ties && r.tie[t] >= 0; ++t) {
+    const int a = r.tie[t];
+    if (row_product(r, a, value(r.some.ratio[a]), value(r.plain.ratio[a])) < 0 && is_one_way(r, a)) return a;
+  }
+  return -1;
 }
 
 /// A transmission whose ratio has passed, since the point that was linearized last, one at which nothing can keep it
