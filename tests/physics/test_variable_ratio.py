@@ -198,6 +198,17 @@ def test_a_ratio_that_leaves_zero_beside_the_housing_jams(leaves):
     clean(run)
 
 
+def test_a_ratio_that_jumps_from_zero_beside_what_another_holds_jams():
+    """No fast change leads there: the energy of what turns would have nowhere to go."""
+    d = cw.Driveline("held")
+    a, b = d.shaft("a", inertia=1.0), d.shaft("b", inertia=1.0, speed=10.0)
+    d.add(cw.VariableGear("holds", input=d.housing, output=a, ratio=1.0))
+    d.add(cw.VariableGear("gear", input=a, output=b, ratio=cw.Step(height=-1.0, start=0.5)))
+    with pytest.warns(cw.StoppedEarly):
+        run = d.simulate(1.0)
+    assert (run.status, run.time[-1], run["b.speed"][-1]) == ("jammed", 0.5, 10.0)
+
+
 def test_a_ratio_that_leaves_zero_beside_the_housing_goes_on_at_rest():
     d = cw.Driveline("grounded")
     a = d.shaft("a", inertia=1.0)

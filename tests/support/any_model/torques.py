@@ -20,9 +20,9 @@ BALANCE = 1e-6
 VARYING = 1e-5
 # of a torque at its capacity
 CAPACITY = 1e-6
-# of the sum of all torques: round-off of it that the search for a break-away concedes, and as much of the row, where
-# both are differences of them
-ROUND_OFF = 4e-12
+# of the sum of all torques: round-off of the largest, which a decision concedes to what holds little beside it, and as
+# much of the row
+ROUND_OFF = 2e-11
 # of a speed beside the largest one there
 SPEED = 1e-8
 FORWARD, BACKWARD, LOCKED, OPEN = 1, -1, 0, 2
@@ -42,7 +42,7 @@ def balance(seen: Seen) -> Iterator[Fault]:
         left = left - (left @ taken) @ taken.T
     varies = any("ratio" in branch.component.hooks for branch in seen.wiring.elements)
     share = max(VARYING if varies else BALANCE, 10.0 * seen.rtol)
-    bad = np.abs(left) - share * (seen.terms + 1e-3 * seen.terms.max(initial=0.0)) - 1e-9
+    bad = np.abs(left) - share * (seen.terms + 1e-3 * seen.terms.max(initial=0.0)) - 1e-9 - seen.turning[:, None]
     for number, node in enumerate(seen.wiring.nodes):
         of = f"{'node' if node.inertia else 'massless'} {_at(seen, number)}"
         name, size = f"{node.name}: ", seen.terms[:, number]

@@ -296,8 +296,8 @@ class Phase : public StepSize<typename Form::Scalar> {
     if constexpr (Form::full) {
       keep_ties(taken_form(), taken_step(), end_of_step(), taken_step().y1());
       auto& ws = taken_form().ws;
-      ws.ratios.reversed = ws.ratios.n > 0 ? turned_row(ws) : -1;
-      if (ws.ratios.reversed >= 0 && ws.ratios.jammed < 0) ws.ratios.jammed = turned_over(ws);
+      ws.ratios.reversed = ws.ratios.n > 0 && ws.held.n > 0 ? turned_tie(ws.ratios) : -1;
+      if (ws.ratios.n > 0 && ws.ratios.jammed < 0) ws.ratios.jammed = turned_over(ws);
       if (ws.ratios.n > 0 && ws.ratios.jammed < 0) ws.ratios.jammed = passed_over(ws.ratios);
     }
     linearize_end();

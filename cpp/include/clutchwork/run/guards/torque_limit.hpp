@@ -59,13 +59,13 @@ bool has_pole(const Workspace<T>& ws, int a) {
   return before * after < 0 && before * value(ws.step_start.drift[a]) > 0 && after * value(ws.step_end.drift[a]) < 0;
 }
 
-/// Whether the point that was evaluated last is before the pole: its row is turned over to that at the end of the step,
+/// Whether the point that was evaluated last is before the pole: its tie is turned over to that at the end of the step,
 /// or the sign of the torque is that at the start.
 template <class T>
 bool is_before_pole(const Workspace<T>& ws, bool same_sign) {
   const Ratios<T>& r = ws.ratios;
   if (r.reversed < 0) return same_sign;
-  return row_product(r, r.reversed, value(r.some.ratio[r.reversed]), value(r.plain.ratio[r.reversed])) < 0;
+  return tie_product(r, r.some, r.plain, r.reversed) < 0;
 }
 
 /// Where what is held with such a torque leaves its limit, on the way to the pole, by its margin f; -1: not before
