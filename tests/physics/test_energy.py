@@ -55,6 +55,24 @@ def test_every_part_of_the_balance() -> None:
         assert run[f"{name}.work"][-1] == pytest.approx(np.trapezoid(run[f"{name}.power"], run.time), rel=1e-3)
 
 
+def test_teeth_that_are_drawn_apart_under_load_warm_their_node() -> None:
+    """The spring of their flanks has no torque out of mesh: its energy is heat at once."""
+    stiffness, torque, capacity = 1e4, 100.0, 50.0
+    d = cw.Driveline("drawn")
+    shaft, plates = d.shaft("s", inertia=1.0), d.thermal("plates", capacity=capacity, temperature=300.0)
+    d.add(cw.Torque("drive", shaft=shaft, torque=torque))
+    numbers = {"stiffness": stiffness, "gap": 0.01, "teeth": 36, "command": cw.Step(offset=1.0, height=-1.0, start=2.0)}
+    d.add(cw.DogClutch("teeth", base=d.housing, follower=shaft, engaged=True, damping=10.0, heat=plates, **numbers))
+    run = d.simulate(2.5, rtol=1e-9, atol=1e-11)
+    assert run["teeth.torque"][-1] == 0.0
+    # all that the drive gave until they part at rest: it has moved them by half a gap and the depth of the flank
+    given = torque * (0.005 + torque / stiffness)
+    warmed = capacity * (run["plates.temperature"][-1] - 300.0)
+    # they have come to rest but for exp(-damping x speed x depth ...): 1e-6 of it
+    assert warmed == pytest.approx(given, rel=1e-5)
+    assert abs(run.energy.residual) < 1e-7 * run.energy.turnover
+
+
 def test_teeth_that_part_faster_than_they_spring_back() -> None:
     """They do not push then, but keep what their spring holds: pressed again, they give back no heat."""
     stiffness, gap, teeth = 1e5, 0.01, 36

@@ -198,6 +198,20 @@ def test_double_shoe_brake(speed: float) -> None:
         assert first_torque(d, "b") == pytest.approx(-math.copysign(torque, speed), rel=1e-9)
 
 
+def test_a_shoe_whose_coefficient_rises_to_self_locking_grabs_and_never_drives() -> None:
+    """A coefficient 0.3 + 0.1 x slip passes the one at which a leading shoe needs no force."""
+    d = cw.Driveline("rising")
+    shaft = d.shaft("s", inertia=1.0)
+    d.add(cw.PrescribedSpeed("motion", shaft=shaft, speed=cw.Table([(0.0, 1.0), (1.0, 40.0)])))
+    law = cw.Stribeck(static=0.3, kinetic=0.3, speed=1.0, viscous=0.1)
+    d.add(cw.DoubleShoeBrake("b", shaft=shaft, friction=law, leading="duplex", **SHOES))
+    run = d.simulate(1.0)
+    # it rises with the slip at first, and beyond the pole is above all that a shoe holds before half of it
+    torque, slow = -run["b.torque"], run["s.speed"] < 2.0
+    assert np.all(torque > 0.0)
+    assert torque[-1] > 10.0 * torque[slow].max()
+
+
 def test_a_shoe_that_locks_by_itself_is_named() -> None:
     d, shaft = wheel()
     law = cw.Coulomb(static=1.5, kinetic=1.0)

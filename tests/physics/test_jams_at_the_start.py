@@ -42,3 +42,24 @@ def test_the_energy_of_a_jam_at_the_start_is_in_an_event_and_in_the_balance(seed
     assert run["wheel.speed"][0] == pytest.approx(0.0, abs=1e-12)
     assert run.energy.heat["g"] == pytest.approx(run["g.heat"][-1], rel=1e-9)
     assert abs(run.energy.residual) < 1e-6 * run.energy.turnover
+
+
+def test_what_slips_again_behind_the_start_has_an_event() -> None:
+    """A rack that is declared locked is stopped; the balance of a shaft without inertia then lets it go at once."""
+    d = cw.Driveline("rack")
+    pinion, light, support = (
+        d.shaft("pinion", inertia=0.005),
+        d.shaft("light"),
+        d.shaft("support", inertia=0.02, speed=-100.0),
+    )
+    mass = d.mass("mass", mass=1.0)
+    d.add(cw.TorsionalDamper("coil", base=d.housing, follower=pinion, torque=[(-0.2, -140.0), (0.2, 110.0)]))
+    d.add(cw.Damper("drag", base=light, follower=support, damping=1.0))
+    rows = ((0.0, 0.6, 0.8, 0.0, 0.0),)
+    d.add(cw.RackPinion("rack", shaft=pinion, mass=mass, support=support, radius=1.0, loss_table=rows, locked=True))
+    run = d.simulate(0.02)
+    state = None
+    for event in run.events.of("rack"):
+        assert state in (None, event.before)
+        state = event.after
+    assert len(run.events.of("rack")) > 1

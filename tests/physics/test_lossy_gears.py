@@ -52,6 +52,21 @@ def test_a_loss_table_is_linear_between_its_rows_and_beyond():
     assert run["a.speed"][-1] == 0.0
 
 
+def test_beyond_a_loss_table_no_loss_becomes_a_gain():
+    """Friction that falls to zero at twice the last speed, and efficiencies that would rise above one."""
+    d = cw.Driveline("runs up")
+    a, b = d.shaft("a", inertia=1.0), d.shaft("b", inertia=1.0)
+    rows = ((0.0, 0.8, 0.8, 2.0, 2.0), (10.0, 0.9, 0.9, 1.0, 1.0))
+    d.add(cw.LossyGear("gear", input=a, output=b, ratio=1.0, loss_table=rows))
+    d.add(cw.Torque("drive", shaft=a, torque=10.0))
+    run = d.simulate(10.0, rtol=1e-9, atol=1e-11)
+    fast = run["a.speed"] > 20.0
+    # from there on it loses nothing: 10 N m for 2 kg m2
+    assert run["a.acceleration"][fast] == pytest.approx(5.0, rel=1e-9)
+    assert np.all(np.diff(-run["gear.work"]) >= -1e-9)
+    assert residual(run) < 1e-7
+
+
 def test_against_scipy_between_the_flips():
     """One gear in slip whose load changes its sign with a sine: the same motion by another integrator."""
     j1, j2, ratio, ahead, back = 0.3, 2.0, 2.0, 0.7, 0.6

@@ -198,6 +198,17 @@ def test_a_ratio_that_leaves_zero_beside_the_housing_jams(leaves):
     clean(run)
 
 
+def test_a_ratio_that_jumps_from_zero_beside_what_another_holds_jams():
+    """No fast change leads there: the energy of what turns would have nowhere to go."""
+    d = cw.Driveline("held")
+    a, b = d.shaft("a", inertia=1.0), d.shaft("b", inertia=1.0, speed=10.0)
+    d.add(cw.VariableGear("holds", input=d.housing, output=a, ratio=1.0))
+    d.add(cw.VariableGear("gear", input=a, output=b, ratio=cw.Step(height=-1.0, start=0.5)))
+    with pytest.warns(cw.StoppedEarly):
+        run = d.simulate(1.0)
+    assert (run.status, run.time[-1], run["b.speed"][-1]) == ("jammed", 0.5, 10.0)
+
+
 def test_a_ratio_that_leaves_zero_beside_the_housing_goes_on_at_rest():
     d = cw.Driveline("grounded")
     a = d.shaft("a", inertia=1.0)
@@ -227,6 +238,29 @@ def test_it_slips_before_a_ratio_at_which_it_holds_nothing(capacity):
     assert grips.time == pytest.approx(pole + (1.0 + np.sqrt(2.0)) * way, abs=1e-6 * way)
     assert [one.cause for one in (leaves, turns, grips)] == ["torque limit", "slip zero", "slip zero"]
     assert np.max(abs(run["v.torque"])) <= capacity * (1.0 + 1e-6)
+    clean(run)
+
+
+def test_two_brakes_slip_before_a_ratio_at_which_they_hold_nothing():
+    """Both hold the shaft whose torque a gear divides by ratio - 1; their torque is nearly the same at both ends of the
+    step that passes 1, zero and pole between them."""
+    push, each = 30.0, 200.0
+    d = cw.Driveline("carrier")
+    a, b = d.shaft("a", inertia=1.0), d.shaft("b", inertia=1.0)
+    d.add(cw.Torque("push", shaft=a, torque=push))
+    ramp = cw.Ramp(offset=4.0, height=-8.0, duration=0.1)
+    d.add(cw.VariableGear("v", input=d.housing, output=b, support=a, ratio=ramp))
+    law = cw.Coulomb(static=0.1, kinetic=0.1)
+    for name in ("one", "other"):
+        d.add(cw.Brake(name, shaft=b, friction=law, gain=1.0, normal_force=each / 0.1))
+    run = d.simulate(0.1, output="steps")
+    leaves = run.events[0]
+    # 0 = ratio b + (1 - ratio) a: the brakes carry push x ratio/(ratio - 1), up to both capacities
+    ratio = 1.0 / (1.0 - push / (2.0 * each))
+    assert leaves.time == pytest.approx(0.1 * (4.0 - ratio) / 8.0, rel=1e-6)
+    assert leaves.cause == "torque limit"
+    torque = run["one.torque"] + run["other.torque"]
+    assert np.max(abs(torque)) <= 2.0 * each * (1.0 + 1e-6)
     clean(run)
 
 

@@ -88,6 +88,10 @@ KEPT: dict[str, Plain] = json.loads(Path(__file__).with_name("kept_models.json")
 OPEN = {
     "a row behind a jam at a dead point, where another event falls into the step of the jam": 320499,
     "a lag that begins with a speed, of a start that is later": 70044,
+    "shares of a contact that moves next to nothing beside a dead point": 5014797,
+    "the limit of five loads that depend on each other, of which four are tried in all ways": 3002924,
+    "a motor whose torque jumps as it leaves rest, in the row there": 3004861,
+    "a dip of a limit load within a step, where a redundant contact has a pole": 5007866,
 }
 
 
@@ -128,8 +132,17 @@ MENDED: dict[str, list[int]] = {
     "two cams or cranks on one mass at a dead point": [60504],
     "a dead point in front of what is held": [60197, 320435, 320547, 320597],
     "a sign law that turned at events of another contact": [320124],
-    "rows beside a sign that is taken at its word": [50238, 60458],
-    "rows that are as good as their tolerance": [50556, 60301, 310153],
+    "rows beside a sign that is taken at its word": [
+        50238,
+        60458,
+        5010144,
+        5012282,
+        3000973,
+        3005527,
+        3005242,
+        5007837,
+    ],
+    "rows that are as good as their tolerance": [50556, 60301, 310153, 5007233, 5013455],
     "a tooth that parts faster than it springs back": [2000230],
     "a jump that was made twice where modes are decided again": [2000539],
     "a slip that a ratio drives between prescribed speeds": [3003594],
@@ -138,6 +151,18 @@ MENDED: dict[str, list[int]] = {
     "a converter whose impeller is the housing": [3002496],
     "a slip that stops within its band and goes on": [3000114],
     "a joint that leaves its support to nothing": [2000171, 3005097],
+    "a loss that was a gain beyond its table": [5003320],
+    "a shaft that a locked contact stopped beside a dead point": [5002251],
+    "teeth that were drawn apart under load": [5005499, 5007981],
+    "a coefficient that rose to self-locking": [5010757],
+    "a set that passed the pole of a ratio": [3005640],
+    "a slip that was found off its interpolant": [5014935],
+    "events behind the first decision": [5004956, 5007610],
+    "loads that are differences of large torques": [5001922, 5011110, 700509, 6000178],
+    "a slip within the tolerance of its contact": [5013690],
+    "a row beyond a table": [5008523],
+    "a tie that two cams lost and found again, elsewhere": [5003392],
+    "a ratio that jumped from zero beside what others held": [6000289],
 }
 
 

@@ -23,6 +23,7 @@ HOOKS = (
     Hook(("edges", "edge"), "Kinked", ("torque", "law", "contact"), "kinks over the rate or the slip"),
     Hook(("margin", "cross", "turns"), "SwitchingLaw", ("torque", "law"), "pieces that its states or inputs switch"),
     Hook(("margin", "cross"), "SwitchingProcess", ("process", "flow"), "pieces that its states and inputs switch"),
+    Hook(("freed",), "Freeing", ("torque",), "stored energy that becomes heat where a piece is left"),
     Hook(("settle",), "Settling", ("torque", "law"), "pieces that follow from where it is, after a jump too"),
     Hook(("pace",), "Paced", ("torque",), "an oscillation of its own that steps resolve, and pieces"),
     Hook(("runs_on",), "RunningOn", ("law",), "pieces that may be left on the way back"),

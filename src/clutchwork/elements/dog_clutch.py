@@ -16,7 +16,7 @@ from clutchwork.elements.bases.heating import Heating
         State("angle", "rad", "angle of follower - base", span=1e-7),
         State("sleeve", "1", "position of the sleeve, 0 out, 1 in"),
     ),
-    hooks=("margin", "cross", "turns", "settle", "heat"),
+    hooks=("margin", "cross", "turns", "settle", "heat", "freed"),
 )
 class DogClutch(Heating):
     """Teeth that mesh only when tooth faces gap and the slip is below `speed`; then they hold any torque.

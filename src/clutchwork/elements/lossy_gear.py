@@ -18,8 +18,8 @@ class LossyGear(WheelPair, Lossy):
     Use it for spur, helical and bevel gears, chains and hypoid drives where losses count. With T the torque into the
     input, the output has `ratio (T - loss)`; the loss is `(1 - efficiency) T` where the input drives,
     `(1/backward - 1) |T|` where the output does, and anything in between at rest. A loss table gives both and a
-    friction torque over the speed of the input, linear between its rows and beyond. The sign of T is an event, and
-    so are the rows.
+    friction torque over the speed of the input, linear between its rows and beyond, there until a loss would be a gain.
+    The sign of T is an event, and so are the rows.
 
     Source: C. Pelchen, C. Schweiger, M. Otter, Modeling and simulating the efficiency of gearboxes and of planetary
     gearboxes, 2nd Modelica Conference, 2002.

@@ -21,7 +21,7 @@ CAUSES = {"jammed": "prescribed", "unbalanced": "prescribed", "out_of_table": ""
 # a speed beside which slips of others count as zero that do not: 1e-10 of it is the tolerance of all
 LOST = 1e9
 # kinds of fault that may be no more than the tolerance of a run times how stiff it is, or what its interpolant misses
-OF_TOLERANCE = ("integral", "balance massless", "creeps")
+OF_TOLERANCE = ("integral", "balance massless", "creeps", "twist", "energy")
 # of its largest ratio, one at a dead point: a crank or a cam that starts there and is held stops within a step of it
 DEAD = 1e-3
 # s before a ratio that loses a speed, within which steps may collapse

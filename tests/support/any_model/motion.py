@@ -139,4 +139,7 @@ def events(seen: Seen) -> Iterator[Fault]:
         if event.element not in silent and known != event.before and "open" not in (known, event.before):
             words = f"{event.element} was {known}, is {event.before} at {event.time:.9g} s"
             yield Fault("event chain", seen.kinds.get(event.element, ""), words)
-        last, state[event.element] = event.time, event.after
+        last = event.time
+        # a fault at the start is told before the first decision, which has no events of its own
+        if not (event.cause == "fault" and event.time == run.options.t_start):
+            state[event.element] = event.after

@@ -32,8 +32,9 @@ class Seen:
     """A run and what the checks need of it, found once."""
 
     def __init__(self, run: Any) -> None:
-        # a run that ends where no torques balance shows none that do in its last row
-        rows = slice(-1 if run.status == "unbalanced" else None)
+        # a run that ends where no torques balance shows none that do in its last row, one that a jump has taken out of
+        # a table shows what is beyond
+        rows = slice(-1 if run.status in ("unbalanced", "out_of_table") else None)
         self.run, self.wiring, self.rows, self.time = run, run.wiring, run.rows[rows], run.time[rows]
         self.inertia = np.array([node.inertia for node in self.wiring.nodes])
         self.rtol = float(run.options.rtol)
@@ -106,6 +107,23 @@ class Seen:
             if branch.component.work == work and not branch.hidden:
                 groups.setdefault(branch.component.name, []).append(number)
         return list(groups.values())
+
+    @cached_property
+    def all_torques(self) -> Array:
+        """Size of all torques of each row: what is a difference of them is no better than their round-off."""
+        found: Array = sum(np.abs(self.part(name)).sum(axis=1) for name in ("element_torque", "contact_torque"))
+        return found
+
+    @cached_property
+    def turning(self) -> Array:
+        """Torque by which each row may be beyond a sign that is taken at its word, where hardly anything slips."""
+        found: Array = np.zeros(len(self.time))
+        for number, branch in enumerate(self.wiring.contacts):
+            if "chatters" not in getattr(branch.component.friction, "hooks", ()):
+                continue
+            near = np.abs(self.speed @ self.contacts[:, number]) <= 1e-6 * (1.0 + self.scale(branch))
+            found = found + np.where(near, 2.0 * self.part("contact_capacity")[:, number], 0.0)
+        return found
 
     @cached_property
     def chatters(self) -> bool:

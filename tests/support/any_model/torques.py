@@ -20,8 +20,9 @@ BALANCE = 1e-6
 VARYING = 1e-5
 # of a torque at its capacity
 CAPACITY = 1e-6
-# of the sum of all torques: round-off of it that the search for a break-away concedes, and as much of the row
-ROUND_OFF = 2e-12
+# of the sum of all torques: round-off of the largest, which a decision concedes to what holds little beside it, and as
+# much of the row
+ROUND_OFF = 2e-11
 # of a speed beside the largest one there
 SPEED = 1e-8
 FORWARD, BACKWARD, LOCKED, OPEN = 1, -1, 0, 2
@@ -41,7 +42,7 @@ def balance(seen: Seen) -> Iterator[Fault]:
         left = left - (left @ taken) @ taken.T
     varies = any("ratio" in branch.component.hooks for branch in seen.wiring.elements)
     share = max(VARYING if varies else BALANCE, 10.0 * seen.rtol)
-    bad = np.abs(left) - share * (seen.terms + 1e-3 * seen.terms.max(initial=0.0)) - 1e-9
+    bad = np.abs(left) - share * (seen.terms + 1e-3 * seen.terms.max(initial=0.0)) - 1e-9 - seen.turning[:, None]
     for number, node in enumerate(seen.wiring.nodes):
         of = f"{'node' if node.inertia else 'massless'} {_at(seen, number)}"
         name, size = f"{node.name}: ", seen.terms[:, number]
@@ -80,8 +81,7 @@ def _locked(seen: Seen, number: int, branch: Branch) -> Iterator[Fault]:
         return
     held = capacity * (1.0 + CAPACITY)
     beyond = np.maximum(-torque - held, torque - np.maximum(held, _ahead(component)))
-    all_torques = sum(np.abs(seen.part(name)).sum(axis=1) for name in ("element_torque", "contact_torque"))
-    noise = 1e-7 + 1e-8 * np.abs(torque).max(initial=0.0) + ROUND_OFF * all_torques
+    noise = 1e-7 + 1e-8 * np.abs(torque).max(initial=0.0) + ROUND_OFF * seen.all_torques + seen.turning
     over = np.where(locked, beyond, 0.0) - noise
     yield from seen.worst(
         "capacity", of, over, lambda at: f"{branch.name} holds {torque[at]:.6g} of {capacity[at]:.6g} N m"
@@ -116,7 +116,12 @@ def drives(seen: Seen) -> Iterator[Fault]:
         turns = seen.chatters and "bound" in branch.component.hooks
         if not turns and not is_stop(branch.component) and getattr(branch.component.friction, "sticks", True):
             power = np.where(mode[:, number] == LOCKED, 0.0, rate[:, number] * torque[:, number])
-            slack = np.abs(torque[:, number]) * (SPEED * seen.scale(branch) + 1e-7)
+            # within its tolerance a contact counts as at rest, and goes the way it is driven
+            near = SPEED * seen.scale(branch) + 1e-7 + getattr(branch.component, "tolerance", 0.0)
+            slack = np.abs(torque[:, number]) * near
+            # a load is a difference of all torques
+            if "bound" in branch.component.hooks:
+                slack = slack + ROUND_OFF * seen.all_torques * np.abs(rate[:, number])
             # where the load turns around the step ends on its interpolant, which is good to the tolerance
             share = max(1e-7, seen.rtol) if "bound" in branch.component.hooks else 1e-7
             yield from _gives(seen, branch, power, slack, share)

@@ -254,6 +254,13 @@ concept SwitchingLaw =
     };
 inline constexpr int turned = -1;
 
+/// Switching torque element that lets stored energy go where it leaves a piece: how much of it becomes heat at once
+/// [J].
+template <class E>
+concept Freeing = requires(const typename E::template Params<double>& p, const At<double>& at) {
+  { E::freed(p, at, 0) } -> std::same_as<double>;
+};
+
 /// Switching law or torque element whose piece follows from where it is, and from the present one: after a jump too.
 template <class E>
 concept Settling = requires(const typename E::template Params<double>& p, const At<double>& at) {

@@ -20,7 +20,8 @@ struct Losses {
   }
 };
 
-/// A loss table in the pool: rows of speed, two efficiencies, two frictions; linear between rows and beyond them.
+/// A loss table in the pool: rows of speed, two efficiencies, two frictions; linear between rows and beyond them, there
+/// until a loss would be a gain.
 template <class T>
 struct LossTable {
   const Curve<T>& list;
@@ -50,7 +51,8 @@ struct LossTable {
       const auto first = at(points, piece, column), rise = (at(points, piece + 1, column) - first) / length;
       return S(first) + (speed - S(start)) * S(rise);
     };
-    return {line(1), line(2), line(3), line(4)};
+    const S none(0), all(1);
+    return {smaller(line(1), all), smaller(line(2), all), larger(line(3), none), larger(line(4), none)};
   }
 };
 

@@ -49,6 +49,19 @@ int law_cross(const Workspace<T>& ws, const Branch<T>& b, const T* rate, int who
   });
 }
 
+/// Energy that a switching branch lets go where it leaves its piece [J].
+template <class T>
+T law_freed(const Workspace<T>& ws, const Branch<T>& b, const T* rate, int who, const T* state) {
+  return visit_branch(b, [&](auto tag, const T* params, const T* inputs, const T*, int) {
+    using E = typename decltype(tag)::type;
+    if constexpr (Freeing<E>) {
+      const auto& p = *reinterpret_cast<const typename E::template Params<T>*>(params);
+      return E::freed(p, At<T>{rate[0], state + b.state, inputs, b.piece, points_of(ws), rate}, who);
+    }
+    return T(0);
+  });
+}
+
 /// The piece in which a switching element or law is where it is now.
 template <class T>
 int settled_piece(const Workspace<T>& ws, const Branch<T>& b, const T* rate) {

@@ -11,11 +11,11 @@
 /// Impulses: what comes to rest at once, and what jumps with prescribed speeds. docs/theory/contacts.md
 namespace clutchwork {
 
-/// Heat of an impulse goes where the heat of its direction goes.
+/// Heat of an instant goes where the heat of its direction goes, among these states.
 template <class T>
-void take_heat(Workspace<T>& ws, int direction, T heat) {
+void take_heat(const Workspace<T>& ws, int direction, T heat, T* state) {
   const auto& sys = ws.sys;
-  T* shared = ws.state + sys.states - sys.shared;
+  T* shared = state + sys.states - sys.shared;
   for (int h = 0; h < sys.heats; ++h) {
     if (sys.heat_direction[h] == direction) shared[sys.heat_to[h]] += T(sys.heat_share[h]) * heat;
   }
@@ -63,7 +63,7 @@ void apply_impulses(Workspace<T>& ws, const BoundedProblem<T>& p, const int* lis
     // work of an impulse: impulse times mean slip
     const T work = p.x[a] * (p.gradient[a] + p.slope[a]) * T(0.5);
     ws.work[ne + list[a]] += work;
-    take_heat(ws, ne + list[a], -work);
+    take_heat(ws, ne + list[a], -work, ws.state);
   }
   backward_solve(nv, ws.geometry.inertia, ws.geometry.factor, x);
   if (ws.ratios.inside) take_impulses(ws, p, list);

@@ -38,19 +38,23 @@ void impulses_for(T p11, T p12, T p22, T c1, T c2, T m1, T m2, T& j1, T& j2) {
   if (value(workless) != 0) j1 = change * m2 / workless, j2 = -change * m1 / workless;
 }
 
-/// Whether the row of a transmission has vanished: a ratio of zero beside the housing.
+/// A transmission whose speeds are not those of its ratio, more than a jump leaves of them; -1: none.
 template <class T>
-bool holds_nothing(const Workspace<T>& ws, int a) {
-  const int nv = int(ws.sys.speeds);
-  for (int i = 0; i < nv; ++i) {
-    if (value(ws.ratios.row[a * nv + i]) != 0) return false;
+int contradicted(const Workspace<T>& ws) {
+  constexpr double most = 1e-6;
+  for (int a = 0; a < ws.ratios.n; ++a) {
+    if (follower_of(ws, a) >= 0) continue;
+    const double first = value(rate_of(ws, first_of(ws, a))),
+                 second = value(ws.ratios.value[a] * rate_of(ws, first_of(ws, a) + 1));
+    if (abs(first - second) > 10 * slip_tolerance(ws) + most * (abs(first) + abs(second))) return a;
   }
-  return true;
+  return -1;
 }
 
 /// The ratio of a transmission has jumped: the limit of a fast change, in which it acts alone, the others kept. The
 /// square of its second rate goes with the inverse of the mobility of its row. From a ratio at which it holds nothing
-/// no such change leads to speeds that another one forbids: it jams. docs/theory/varying-ratios.md (12)
+/// that the others leave to move no such change leads to speeds that another one forbids: it jams.
+/// docs/theory/varying-ratios.md (12)
 template <class T>
 void jump_ratio(Workspace<T>& ws, int a, T ratio) {
   Ratios<T>& r = ws.ratios;
@@ -62,7 +66,6 @@ void jump_ratio(Workspace<T>& ws, int a, T ratio) {
   const T r1 = rate_of(ws, d), r2 = rate_of(ws, d + 1), before = mobility(r.value[a]), after = mobility(ratio);
   const T from = r.value[a];
   r.value[a] = ratio;
-  if (holds_nothing(ws, a) && value(after) > 0 && abs(value(r1 - ratio * r2)) > slip_tolerance(ws)) r.jammed = a;
   if (!(value(before) > 0) || !(value(after) > 0)) return;
   const T to =
       r2 * (may_vary(p11, p12, p22) ? sqrt(before / after) : root(p11, p12, p22, from) / root(p11, p12, p22, ratio));
@@ -95,6 +98,7 @@ void jump_ratios(Workspace<T>& ws, double tolerance) {
     follower_of(ws, a) < 0 && value(ratio - r.before[a]) != 0 ? jump_ratio(ws, a, ratio) : void(r.value[a] = ratio);
   }
   write_rows(ws), move_followers(ws);
+  r.jammed = contradicted(ws);
   part_moved(ws, tolerance);
 }
 

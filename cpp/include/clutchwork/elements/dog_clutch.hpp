@@ -121,6 +121,13 @@ struct DogClutch : declared::DogClutch {
     if (who == parts) return at.piece <= behind ? at.piece + (slack_ahead - ahead) : at.piece - (slack_ahead - ahead);
     return loose;
   }
+  /// What presses the flanks is gone where the sleeve leaves them.
+  template <class T>
+  static T freed(const Params<T>& p, const At<T>& at, int who) {
+    const T pressed = depth(p, at);
+    return who == leaves && flank(at.piece) != 0 && value(pressed) > 0 ? T(0.5) * p.stiffness * pressed * pressed
+                                                                       : T(0);
+  }
   template <class T>
   static bool turns(const Params<T>&, int) {
     return false;

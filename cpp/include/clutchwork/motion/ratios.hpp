@@ -351,7 +351,10 @@ void move_followers_whole(const Ratios<T>& r, const Tied<S>& w, S* d) {
 }
 
 /// Of the fastest speed, more than an integration drifts off the ties in a step.
-inline constexpr double most_drift = 1e-2;
+template <class T>
+double most_drift(const Workspace<T>& ws) {
+  return larger(1e-3, smaller(1e-2, 10 * ws.options.rtol));
+}
 
 /// The transmission that took most energy when speeds were brought onto the ties last; -1: a locked contact did.
 template <class T>
@@ -362,6 +365,21 @@ int hardest_tie(const Ratios<T>& r) {
   for (int t = 0; t < r.ties && r.tie[t] >= 0; ++t) {
     const double taken = value(w.wanted[t] * w.wanted[t] * w.gram[t * r.ties + t]);
     if (taken > most) most = taken, hardest = r.tie[t];
+  }
+  return hardest;
+}
+
+/// The locked contact whose direction varies that took most energy there; -1: none.
+template <class T>
+int hardest_contact(const Workspace<T>& ws) {
+  const Ratios<T>& r = ws.ratios;
+  const Tied<T>& w = r.plain;
+  int hardest = -1;
+  double most = 0;
+  for (int t = 0; t < r.ties; ++t) {
+    const double taken = value(w.wanted[t] * w.wanted[t] * w.gram[t * r.ties + t]);
+    if (r.tie[t] >= 0 || !(taken > most)) continue;
+    most = taken, hardest = ws.held.contact[ws.held.n_fixed + r.rows - r.ties + t - 2 * r.n];
   }
   return hardest;
 }
@@ -408,7 +426,11 @@ int settle_ties(Form& form, T* y) {
     const double first = value(rate(2 * a)), second = value(w.ratio[a] * rate(2 * a + 1));
     if (abs(first - second) > 10 * ws.guard.zero + most * (abs(first) + abs(second))) return a;
   }
-  return moved > 1e3 * ws.guard.zero + most_drift * fastest ? hardest_tie(r) : -1;
+  ws.ratios.stopped = -1;
+  if (!(moved > 1e3 * ws.guard.zero + most_drift(ws) * fastest)) return -1;
+  const int hardest = hardest_tie(r);
+  if (hardest < 0) ws.ratios.stopped = hardest_contact(ws);
+  return hardest;
 }
 
 /// Product of the row of transmission a at one ratio with its row at another, in the mobility of the reduced speeds.
@@ -443,6 +465,31 @@ int turned_over(const Workspace<T>& ws) {
       miss += first - second, size += abs(first) + abs(second);
     }
     if (abs(miss) > ws.guard.zero + 1e-9 * size) return a;
+  }
+  return -1;
+}
+
+/// Product of tie t at one point with itself at another, in the mobility of the reduced speeds.
+template <class T, class A, class B>
+double tie_product(const Ratios<T>& r, const Tied<A>& one, const Tied<B>& other, int t) {
+  double product = 0;
+  for (int k = 0; k < r.rows; ++k) {
+    const double share = value(one.share[t * r.rows + k]);
+    for (int l = 0; l < r.rows && share != 0; ++l)
+      product += value(r.between[k * r.rows + l]) * share * value(other.share[t * r.rows + l]);
+  }
+  return product;
+}
+
+/// A tie that has turned over, and nothing else, since the point that was linearized last: it has passed a ratio at
+/// which nothing is left of it; -1: none. docs/theory/varying-ratios.md (22)
+template <class T>
+int turned_tie(const Ratios<T>& r) {
+  for (int t = 0; t < r.ties; ++t) {
+    const double mixed = tie_product(r, r.some, r.plain, t);
+    if (mixed >= 0) continue;
+    const double sizes = tie_product(r, r.some, r.some, t) * tie_product(r, r.plain, r.plain, t);
+    if (sizes - mixed * mixed <= 1e-12 * sizes) return t;
   }
   return -1;
 }

@@ -2,6 +2,7 @@
 #include <clutchwork/components/direction.hpp>
 #include <clutchwork/components/input.hpp>
 #include <clutchwork/components/pieces.hpp>
+#include <clutchwork/contacts/impulses.hpp>
 #include <clutchwork/contacts/ratios.hpp>
 #include <clutchwork/contacts/sticking.hpp>
 #include <clutchwork/motion/dynamics.hpp>
@@ -82,7 +83,9 @@ bool pass_law(Form& form, Step<Form>& step, int k, int who) {
   Branch<T>& b = ws.branch[k];
   T* state = step.y0() + form.nz();
   int& heading = ws.heading[b.direction];
-  b.piece = law_cross(ws, b, PresentRates<T>(ws, b).at, who, state);
+  const PresentRates<T> rate(ws, b);
+  const T freed = law_freed(ws, b, rate.at, who, state);
+  b.piece = law_cross(ws, b, rate.at, who, state);
   // a state that starts to slide does so the way the contact slips, however small the slip
   if (who == turned) {
     heading = -heading;
@@ -93,6 +96,7 @@ bool pass_law(Form& form, Step<Form>& step, int k, int who) {
   }
   ws.piece[b.direction] = b.piece;
   for (int i = 0; i < b.states; ++i) ws.state[b.state + i] = state[b.state + i];
+  if (value(freed) != 0) take_heat(ws, b.direction, freed, state), take_heat(ws, b.direction, freed, ws.state);
   list_lines(ws);
   return !events_crowd(ws, b.direction);
 }

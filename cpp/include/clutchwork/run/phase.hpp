@@ -45,6 +45,8 @@ class Phase : public StepSize<typename Form::Scalar> {
   static constexpr double most_cut_error = 0.3;
   // of a step towards rest: where inside it is checked, and how much of the tolerance an interpolant may miss there
   static constexpr double inner = 0.7, most_inner_error = 10;
+  // of the tolerance: an interpolant that says nothing of a slip
+  static constexpr double much_missed = 1e3;
   // steps at the limit of stability, of the length over the fastest rate, before an implicit method goes on
   static constexpr int most_strained = 8;
   static constexpr double strain = 1.5;
@@ -124,6 +126,7 @@ class Phase : public StepSize<typename Form::Scalar> {
       if (ws_.ratios.n > 0) prepare_ratios(form_);
       if (fresh) keep_ties(form_, step_, ws_.time, step_.y0());
       if (ws_.ratios.jammed >= 0) return jam(ws_.ratios.jammed);
+      if (fresh && ws_.ratios.n > 0 && ws_.ratios.stopped >= 0) return stop_at(ws_.ratios.stopped);
     }
     if constexpr (!Form::small) {
       if (fresh && balance_massless(form_, step_) && event && may_decide_again()) return decide_again();
@@ -220,8 +223,23 @@ class Phase : public StepSize<typename Form::Scalar> {
     ws_.guard.balanced_at = ws_.time;
     export_state(form_, step_.y0());
     for (int c = 0; c < ws_.sys.contacts; ++c) ws_.event_context.mode[c] = ws_.contact.mode[c];
+    // the start is decided: what changes now has events
+    if (ws_.event_context.cause == Cause::initial) ws_.event_context.cause = Cause::other_event;
     ws_.event_context.contact = -1;
     over_ = true;
+  }
+
+  /// A locked contact has stopped what moved, as beside a dead point: its impulse is an event, and the modes are
+  /// decided with the speeds that it leaves. docs/theory/varying-ratios.md (10)
+  [[gnu::noinline]] void stop_at(int c) {
+    const int d = int(ws_.sys.elements) + c;
+    const T before = energy_of_motion(ws_);
+    export_state(form_, step_.y0());
+    const T lost = before - energy_of_motion(ws_);
+    ws_.work[d] -= lost;
+    take_heat(ws_, d, lost, step_.y0() + form_.nz());
+    record(ws_, {c, locked, locked, Cause::impulse, 0.0, 0.0, 0.0, value(before), value(before - lost)});
+    decide_again();
   }
 
   // -------------------------------------------------------------------------------------------------- room for a step
@@ -278,6 +296,7 @@ class Phase : public StepSize<typename Form::Scalar> {
     if constexpr (Form::full) {
       keep_ties(taken_form(), taken_step(), end_of_step(), taken_step().y1());
       auto& ws = taken_form().ws;
+      ws.ratios.reversed = ws.ratios.n > 0 && ws.held.n > 0 ? turned_tie(ws.ratios) : -1;
       if (ws.ratios.n > 0 && ws.ratios.jammed < 0) ws.ratios.jammed = turned_over(ws);
       if (ws.ratios.n > 0 && ws.ratios.jammed < 0) ws.ratios.jammed = passed_over(ws.ratios);
     }
@@ -310,6 +329,8 @@ class Phase : public StepSize<typename Form::Scalar> {
     const Hit hit = find_hit(taken_form(), taken_step());
     if (must_land(hit)) {
       land(hit.s);
+    } else if (hit.rough) {
+      error_ = much_missed, reject_and_shrink();
     } else if (misses_rest(hit)) {
       reject_and_shrink();
     } else if (Form::full && hit.none() && taken_form().ws.ratios.jammed >= 0) {

@@ -13,16 +13,19 @@ namespace clutchwork {
 
 /// Kinetic energy [J].
 template <class T>
-double kinetic_energy(const Workspace<T>& ws) {
+T energy_of_motion(const Workspace<T>& ws) {
   const auto& sys = ws.sys;
-  double e = 0;
+  T e = T(0);
   for (int n = 0; n < sys.nodes; ++n) {
-    double w = value(basis_row(sys, n).times(ws.v));
-    for (int p = 0; p < sys.prescribed; ++p)
-      w += value(sys.basis_prescribed[n * sys.prescribed + p]) * value(ws.in.prescribed[p]);
-    e += 0.5 * value(sys.inertia[n]) * w * w;
+    T w = basis_row(sys, n).times(ws.v);
+    for (int p = 0; p < sys.prescribed; ++p) w += T(sys.basis_prescribed[n * sys.prescribed + p]) * ws.in.prescribed[p];
+    e += T(0.5) * T(sys.inertia[n]) * w * w;
   }
   return e;
+}
+template <class T>
+double kinetic_energy(const Workspace<T>& ws) {
+  return value(energy_of_motion(ws));
 }
 
 /// Everything at one point of a step.

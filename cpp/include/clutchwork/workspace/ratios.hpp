@@ -53,6 +53,8 @@ struct Ratios {
   T* tied = nullptr;    ///< n, scratch: what the rows of a motion miss, or its parts along the span
   bool inside = false;  ///< a decision is made
   int jammed = -1;      ///< transmission that nothing can keep at its ratio, -1: none
+  int stopped = -1;     ///< locked contact whose direction varies and that has just stopped what moved, -1: none
+  int reversed = -1;    ///< tie that has turned over in the step, -1: none
 
   // of a phase
   int more_rows = 0;  ///< of the form, behind those of the rates: locked contacts whose directions vary

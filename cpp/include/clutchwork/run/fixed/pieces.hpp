@@ -1,5 +1,6 @@
 #pragma once
 #include <clutchwork/components/pieces.hpp>
+#include <clutchwork/contacts/impulses.hpp>
 #include <clutchwork/run/fixed/prepare.hpp>
 #include <clutchwork/run/processes.hpp>
 
@@ -27,6 +28,7 @@ inline void cross_branch(Run& ws, Branch<double>& b) {
   for (int round = 0; round < most_passed; ++round) {
     int who = 0;
     if (law_margin(ws, b, rate.at, still, ws.state, ws.observed.state_rates, who).v >= 0) break;
+    take_heat(ws, d, law_freed(ws, b, rate.at, who, ws.state), ws.state);
     b.piece = law_cross(ws, b, rate.at, who, ws.state);
   }
   ws.piece[b.direction] = b.piece;

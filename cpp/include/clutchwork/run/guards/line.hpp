@@ -13,10 +13,11 @@
 /// Guards that are linear in the state. docs/theory/events.md
 namespace clutchwork {
 
-/// First crossing of a guard that is linear in the state, before `limit`; -1: none.
+/// First crossing of a guard that is linear in the state, before `limit`; -1: none. `rough`: there the interpolant is
+/// off it, more than what counts as zero.
 template <class Form>
 double line_crossing(Form& form, Step<Form>& step, const LineGuard& guard, double g0, double g1, double noise,
-                     double limit) {
+                     double limit, bool& rough) {
   using T = typename Form::Scalar;
   Workspace<T>& ws = form.ws;
   fit(form, step);
@@ -48,7 +49,8 @@ double line_crossing(Form& form, Step<Form>& step, const LineGuard& guard, doubl
   };
   const double f_low = larger(poly(low), 0.0), f_high = poly(high);
   if (f_high >= 0) return high;
-  const double s = locate(poly, low, f_low, high, f_high);
+  const double s = locate(poly, low, f_low, high, f_high), rest = 1 - s;
+  rough = abs(mend) * s * rest * rest * rest > 1e5 * noise;
   return s <= limit ? s : -1;
 }
 
@@ -135,11 +137,12 @@ struct LineCrossing {
       const LineGuard& g = ws.guard.line[i];
       double g0, g1;
       if (stays_clear(ws, g.branch, g.sign, g.level, step.h, noise, g0, g1) || idles(ws, g, step.h, g0, g1)) continue;
-      double s = line_crossing(form, step, g, g0, g1, noise, hit.s);
+      bool rough = false;
+      double s = line_crossing(form, step, g, g0, g1, noise, hit.s, rough);
       if constexpr (Form::full) {
         if (ws.ratios.n > 0 && s > 0 && s < 1) s = crossing_on_ties(form, step, g, noise, s);
       }
-      hit.take(s, i);
+      if (hit.take(s, i)) hit.rough = rough;
     }
   }
   template <class Form, class T = typename Form::Scalar>

@@ -3,6 +3,7 @@
 #include <clutchwork/components/input.hpp>
 #include <clutchwork/contacts/locked.hpp>
 #include <clutchwork/contacts/sticking.hpp>
+#include <clutchwork/motion/ratios.hpp>
 #include <clutchwork/run/clamp_loads.hpp>
 #include <clutchwork/run/guards/torques.hpp>
 #include <clutchwork/run/hit.hpp>
@@ -49,12 +50,22 @@ double rigid_departure(Form& form, Step<Form>& step, int a, double limit) {
   return first_crossing(f, f(0), f(1), limit);
 }
 
-/// Whether the torque of a locked contact passes from one sign to the other in the step and grows towards it from both
-/// ends. docs/theory/varying-ratios.md (22)
+/// Whether the torque of a locked contact has a pole in the step: a row turns over, or the torque passes from one sign
+/// to the other and grows towards it from both ends. docs/theory/varying-ratios.md (22)
 template <class T>
 bool has_pole(const Workspace<T>& ws, int a) {
+  if (ws.ratios.reversed >= 0) return true;
   const double before = value(ws.step_start.multiplier[a]), after = value(ws.step_end.multiplier[a]);
   return before * after < 0 && before * value(ws.step_start.drift[a]) > 0 && after * value(ws.step_end.drift[a]) < 0;
+}
+
+/// Whether the point that was evaluated last is before the pole: its tie is turned over to that at the end of the step,
+/// or the sign of the torque is that at the start.
+template <class T>
+bool is_before_pole(const Workspace<T>& ws, bool same_sign) {
+  const Ratios<T>& r = ws.ratios;
+  if (r.reversed < 0) return same_sign;
+  return tie_product(r, r.some, r.plain, r.reversed) < 0;
 }
 
 /// Where what is held with such a torque leaves its limit, on the way to the pole, by its margin f; -1: not before
@@ -70,7 +81,7 @@ template <class T, class F>
       const double s = locate(f, low, above, middle, margin);
       return s <= limit ? s : -1;
     }
-    if (sign * value(ws.observed.carried[a]) > 0)
+    if (is_before_pole(ws, sign * value(ws.observed.carried[a]) > 0))
       low = middle, above = margin;
     else
       high = middle;
