@@ -48,7 +48,8 @@ double line_crossing(Form& form, Step<Form>& step, const LineGuard& guard, doubl
   };
   const double f_low = larger(poly(low), 0.0), f_high = poly(high);
   if (f_high >= 0) return high;
-  const double s = locate(poly, low, f_low, high, f_high);
+  // one that leaves its surface may come back far sooner than the step ends
+  const double s = locate(poly, low, f_low, high, f_high, fresh && leaving > 0 ? 50 : 12);
   return s <= limit ? s : -1;
 }
 
