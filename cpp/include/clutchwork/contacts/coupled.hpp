@@ -101,11 +101,19 @@ void wanted(const CoupledProblem<T>& p, int i, int& state, int& line) {
     const double gain = value(own.on(1 - line, load)) - value(own.on(line, load));
     if (state == 0 || gain > noise.torque) line = own.line_at(load);
   }
-  if (p.sliding[i] != 0) return;
+  const double slope = value(p.slope[i]);
+  if (p.sliding[i] != 0) {
+    // one that is let go moves the way it is let go
+    if (p.starts[i] != 0 && slope * p.state[i] < -noise.slope) line = 1 - p.line[i];
+    return;
+  }
   if (state == 0) {
     if (value(p.x[i]) > value(high) + noise.torque) state = -1;
     if (value(p.x[i]) < value(low) - noise.torque) state = 1;
-  } else if (value(p.slope[i]) * state < -noise.slope) {
+    // no torque keeps it at rest beside the others that rest
+    const double apart = 1e-6 * abs(value(p.gradient[i])) + noise.slope;
+    if (p.load[i] >= 0 && abs(slope) > apart) state = slope > 0 ? 1 : -1;
+  } else if (slope * state < -noise.slope) {
     state = 0;
   }
 }
@@ -205,10 +213,19 @@ bool enumerate_states(CoupledProblem<T>& p) {
   return false;
 }
 
-/// Torques, states and lines that fit together. False: there are none, or they were not found.
+template <class T>
+bool search_states(CoupledProblem<T>& p) {
+  return iterate_states(p, false) || iterate_states(p, true) || enumerate_states(p);
+}
+
+/// Torques, states and lines that fit together; where those that are let go cannot all move that way, as they can.
+/// False: there are none, or they were not found.
 template <class T>
 bool solve(CoupledProblem<T>& p) {
-  return iterate_states(p, false) || iterate_states(p, true) || enumerate_states(p);
+  if (search_states(p)) return true;
+  bool any = false;
+  for (int i = 0; i < p.n; ++i) any = any || p.starts[i] != 0, p.starts[i] = 0;
+  return any && search_states(p);
 }
 
 }  // namespace clutchwork

@@ -135,6 +135,8 @@ double slope_noise(const Workspace<T>& ws, const BoundedProblem<T>& p, int a, in
   const double mobility = value(sqrt(p.matrix.diagonal[a]));
   const double round_off = larger(1e-10 * scale, 1e-12 * ws.decision.effort * mobility);
   const bool arrived = c == located && ws.event_context.cause == Cause::slip_zero;
+  // what comes back at the instant at which it was let go has not left
+  if (arrived && stands_since(ws, ws.contact.met_at[c])) return infinity;
   const bool jammed = c == ws.event_context.contact && ws.event_context.cause == Cause::jam;
   // twice what the guard of the load concedes
   if (jammed) return larger(round_off, 2e-12 * ws.decision.pull * mobility * mobility);
@@ -218,6 +220,8 @@ CoupledProblem<T> pose_coupled(Workspace<T>& ws, BoundedProblem<T>& p) {
     // what slips goes on with its line where that fits
     q.line[a] = follows(c) ? ws.loads.line[ws.loads.of[c]] : 0;
     q.sliding[a] = ws.decision.candidate[c] ? 0 : ws.contact.mode[c];
+    q.starts[a] = follows(c) && q.sliding[a] != 0 && ws.contact.forced[c] == q.sliding[a] &&
+                  abs(value(rate_of(ws, int(sys.elements) + c))) <= slip_tolerance(ws);
     for (int l = 0; l < sys.loads; ++l) q.reach[l * n + a] = ws.loads.by_torque[l * ws.n_directions + sys.elements + c];
     q.lower[a] = q.upper[a] = T(0);
     if (follows(c)) {

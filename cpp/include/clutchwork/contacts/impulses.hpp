@@ -175,9 +175,9 @@ bool stop_within_tolerance(Workspace<T>& ws, int located, double still) {
 /// docs/theory/load-dependent.md, rule 4
 template <class T>
 bool stop_jammed(Workspace<T>& ws, int jammed) {
-  return least_impulses(ws, slip_tolerance(ws), [&](int c) {
-    return c == jammed || (ws.contact.mode[c] == locked && !contact_one_way(ws, c));
-  });
+  // to round-off: torques of a slip that is left may be more than the friction without a load
+  return least_impulses(
+      ws, 0.0, [&](int c) { return c == jammed || (ws.contact.mode[c] == locked && !contact_one_way(ws, c)); });
 }
 
 /// Transmissions keep their rates together while prescribed speeds jump; x: mass-weighted.

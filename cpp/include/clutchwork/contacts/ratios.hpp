@@ -182,8 +182,9 @@ void take_off_span(const Workspace<T>& ws, T* x) {
   }
 }
 
-/// Of a direction that is shorter than this share of itself by the rows nothing is left.
-inline constexpr double left_over = 1e-7;
+/// Of a direction of a contact that is shorter than this share of itself by the rows nothing is left; of an element,
+/// which only moves others, what is more than the round-off of the span is.
+inline constexpr double left_over = 1e-7, round_off_of_span = 1e-13;
 
 /// Orthonormal span of the rows that tie speeds with inertia, but for one (-1: none); of those that depend on others
 /// nothing is left.
@@ -191,7 +192,7 @@ template <class T>
 void span_rows(Workspace<T>& ws, int without = -1) {
   Ratios<T>& r = ws.ratios;
   const int nv = int(ws.sys.speeds);
-  r.rank = 0;
+  r.rank = 0, r.blur = round_off_of_span;
   for (int a = 0; a < r.n; ++a) {
     if (follower_of(ws, a) >= 0 || a == without) continue;
     T *x = r.span + r.rank * nv, *triangle = r.triangle + r.rank * r.n;
@@ -211,6 +212,7 @@ void span_rows(Workspace<T>& ws, int without = -1) {
     if (!(value(length) > left_over * size)) continue;
     for (int i = 0; i < nv; ++i) x[i] /= length;
     triangle[r.rank] = length;
+    r.blur = larger(r.blur, round_off_of_span * size / value(length));
     r.order[r.rank++] = a;
   }
 }
@@ -231,7 +233,8 @@ void leave_directions(Workspace<T>& ws) {
     for (int k = 0; k < r.rank; ++k) r.part[d * r.n + k] = dot(nv, r.span + k * nv, x);
     take_off_span(ws, x);
     r.own[d] = dot(nv, x, x);
-    if (value(r.own[d]) > left_over * left_over * value(r.whole[d])) continue;
+    const double least = d < ne ? smaller(r.blur, left_over) : left_over;
+    if (value(r.own[d]) > least * least * value(r.whole[d])) continue;
     for (int i = 0; i < nv; ++i) x[i] = T(0);
     r.own[d] = T(0);
   }
@@ -338,8 +341,11 @@ class BesideRatios {
   explicit BesideRatios(Workspace<T>& ws, Written which = Written::now) : ws_(ws), entered_(ws.ratios.n > 0) {
     if (!entered_) return;
     Ratios<T>& r = ws.ratios;
-    for (int a = 0; a < r.n && which != Written::last; ++a)
+    for (int a = 0; a < r.n && which != Written::last; ++a) {
       r.value[a] = which == Written::before ? r.before[a] : ratio_now(ws, a).v;
+      // round-off at a dead point
+      if (abs(value(r.value[a])) <= 1e-15 * abs(value(bend_of_ratio(ws, a)))) r.value[a] = T(0);
+    }
     write_rows(ws), span_rows(ws), leave_directions(ws), leave_loads(ws);
     swap();
   }

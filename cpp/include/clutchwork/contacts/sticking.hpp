@@ -5,6 +5,12 @@
 /// What each contact can hold now, and which may stick: docs/theory/contacts.md.
 namespace clutchwork {
 
+/// Whether time stands since an instant. docs/theory/contacts.md, rule 5
+template <class T>
+bool stands_since(const Workspace<T>& ws, double instant) {
+  return ws.time - instant <= 1e-9 + 1e-12 * abs(ws.time);
+}
+
 /// Load of a contact now, negative included.
 template <class T>
 T load_of(const Workspace<T>& ws, int c) {

@@ -194,6 +194,17 @@ T load_swing(const Workspace<T>& ws, int c, T torque) {
   return abs(bound.slope[bound.line_at(ws.loads.now[l])] * ws.loads.drift[l]);
 }
 
+/// The most that a change of its load does to the capacity of such a contact.
+template <class T>
+T load_share(const Workspace<T>& ws, int c) {
+  T most = T(0);
+  for (int way = backward; way <= forward; way += forward - backward) {
+    const Bound<T> bound = bound_of(ws, c, way, T(0), 0);
+    most = larger(most, larger(abs(bound.slope[0]), abs(bound.slope[1])));
+  }
+  return most;
+}
+
 /// Multipliers of the locked contacts, their drift and their capacities there.
 template <class Form, class T = typename Form::Scalar>
 CLUTCHWORK_HOT void sense(Form& form, const T* y, const T* velocity, const T* d, StepEnd<T>& edge) {
@@ -223,7 +234,11 @@ CLUTCHWORK_HOT void sense(Form& form, const T* y, const T* velocity, const T* d,
         [] { return T(0); });
     if constexpr (Form::full) {
       const int c = ws.held.contact[a];
-      if (ws.loads.of[c] >= 0) edge.swing[a] = load_swing(ws, c, edge.multiplier[a]);
+      if (ws.loads.of[c] >= 0) {
+        edge.swing[a] = load_swing(ws, c, edge.multiplier[a]);
+        // round-off of its load, twice what a decision concedes
+        edge.noise[a] *= T(4) * (T(1) + load_share(ws, c));
+      }
     }
   }
   if constexpr (!has_lanes<T>) {

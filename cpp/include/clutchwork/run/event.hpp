@@ -1,4 +1,5 @@
 #pragma once
+#include <clutchwork/contacts/sticking.hpp>
 #include <clutchwork/workspace.hpp>
 
 /// Events: their record, and those that crowd.
@@ -74,7 +75,7 @@ bool process_crowds(Workspace<T>& ws, int i) {
 /// Forced break-aways last while time stands. docs/theory/contacts.md, rule 5
 template <class T>
 void forget_forced(Workspace<T>& ws) {
-  if (ws.time - ws.contact.forced_time <= 1e-9 + 1e-12 * abs(ws.time)) return;
+  if (stands_since(ws, ws.contact.forced_time)) return;
   for (int c = 0; c < ws.sys.contacts; ++c) ws.contact.forced[c] = 0;
   ws.contact.forced_time = ws.time;
 }

@@ -238,6 +238,8 @@ Status decide(Workspace<T>& ws, bool at_start) {
     if (!stop_within_tolerance(ws, located, much ? 0.0 : slip_tolerance(ws)) || (stops && !collide(ws)))
       return Status::no_mode;
     see_speeds(ws);
+    // one that others drive on cannot be stopped before its slip is zero
+    if (ws.contact.mode[located] != locked) ws.contact.forced[located] = ws.contact.mode[located];
     status = settle(ws, -1);
     ws.contact.impulse[located] = 1;
   }
@@ -284,6 +286,17 @@ void jump(Workspace<T>& ws) {
   keep_prescribed(ws);
 }
 
+/// When contacts were let go from rest last. docs/theory/contacts.md, rule 10
+template <class T>
+void note_let_go(Workspace<T>& ws) {
+  const double tolerance = slip_tolerance(ws);
+  for (int c = 0; c < ws.sys.contacts; ++c) {
+    const int mode = ws.contact.mode[c];
+    if (is_stop(ws, c) || (mode != forward && mode != backward)) continue;
+    if (abs(value(rate_of(ws, int(ws.sys.elements) + c))) <= tolerance) ws.contact.met_at[c] = ws.time;
+  }
+}
+
 /// Decide the modes at the present instant and report what changed.
 template <class T>
 Status switch_modes(Workspace<T>& ws) {
@@ -315,6 +328,7 @@ Status switch_modes(Workspace<T>& ws) {
   const Status decided = decide(ws, at_start);
   if (decided != Status::running) return decided;
   if (ws.event_context.cause == Cause::impact) ws.contact.met_at[located] = ws.time;
+  note_let_go(ws);
   ws.fresh_phase = true;
   if (ws.contact.failed >= 0) {
     ws.detail.component = ne + ws.contact.failed;

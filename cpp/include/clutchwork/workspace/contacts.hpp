@@ -16,7 +16,7 @@ struct Contacts {
   int* impulse = nullptr;                     ///< contacts that an impulse has locked at the start
   int* side = nullptr;                        ///< of each stop: the end at which it is closed, -1 or 1, 0: it is open
   int* struck = nullptr;                      ///< stops that have met an end at this instant
-  double* met_at = nullptr;                   ///< [s] when a stop met an end last
+  double* met_at = nullptr;                   ///< [s] when a stop met an end last, or another contact was let go last
   int failed = -1;                            ///< contact whose fault ends the run
   double forced_time = -infinity;             ///< [s]
 

@@ -47,6 +47,7 @@ struct CoupledMemory {
   T *lower = nullptr, *upper = nullptr;  ///< n, of those without load
   int* load = nullptr;                   ///< n: number of its load, -1: none
   int* sliding = nullptr;                ///< n: 1 forward, -1 backward: it slips already, 0: it may stick
+  int* starts = nullptr;                 ///< n: it is let go the way it slides and must move so
   T* reach = nullptr;                    ///< loads x n: load by the torques
   T* given = nullptr;                    ///< loads: without these torques
   Bound<T>* bound = nullptr;             ///< loads x 2: against slip backward, then forward
@@ -70,7 +71,8 @@ struct CoupledMemory {
     a.scratch(p.mobility, nc * nc), a.scratch(p.gradient, nc), a.scratch(p.weight, nc), a.scratch(p.lower, nc);
     a.scratch(p.upper, nc), a.scratch(p.reach, m * nc), a.scratch(p.given, m), a.scratch(p.x, nc);
     a.scratch(p.slope, nc), a.scratch(p.now, m), a.scratch(p.matrix, nc * nc), a.scratch(p.trial, nc);
-    a.take(p.bound, 2 * m), a.take(p.load, nc), a.take(p.sliding, nc), a.take(p.state, nc), a.take(p.line, nc);
+    a.take(p.bound, 2 * m), a.take(p.load, nc), a.take(p.sliding, nc), a.take(p.starts, nc), a.take(p.state, nc),
+        a.take(p.line, nc);
     a.take(p.pivot, nc), a.take(p.next, 2 * nc);
   }
 };

@@ -40,6 +40,7 @@ struct Ratios {
 
   // the rows that tie speeds with inertia, mass-weighted: row order[k] = sum of triangle[k, j] span[j]
   int rank = 0;
+  double blur = 0;  ///< round-off of the span, of a direction
   int* order = nullptr;
   T *span = nullptr, *triangle = nullptr, *share = nullptr;
   T* drawn = nullptr;  ///< part of the acceleration along the span that the rows ask for

@@ -49,7 +49,8 @@ double line_crossing(Form& form, Step<Form>& step, const LineGuard& guard, doubl
   };
   const double f_low = larger(poly(low), 0.0), f_high = poly(high);
   if (f_high >= 0) return high;
-  const double s = locate(poly, low, f_low, high, f_high), rest = 1 - s;
+  // one that leaves its surface may come back far sooner than the step ends
+  const double s = locate(poly, low, f_low, high, f_high, fresh && leaving > 0 ? 50 : 12), rest = 1 - s;
   rough = abs(mend) * s * rest * rest * rest > 1e5 * noise;
   return s <= limit ? s : -1;
 }

@@ -13,6 +13,31 @@
 /// Ends of the pieces of laws and elements. docs/theory/events.md, rule 12
 namespace clutchwork {
 
+/// What a guard that starts on its border misses of the slope with which the motion leaves that, where the interpolant
+/// goes beyond it, over the step; 0: it leaves as the motion does. `at`: the guard over a share of the step and a
+/// state. docs/theory/events.md, rule 3
+template <class Form>
+double missed_slope(Form& form, Step<Form>& step, double start, auto&& at) {
+  constexpr double near = 1e-5;
+  auto *y = step.point(), *velocity = step.u();
+  for (int i = 0; i < form.n(); ++i) velocity[i] = step.f0()[i];
+  form.solve_mass(velocity);
+  auto off = [&](double s, bool moves) {
+    interpolate(form, step, s, y);
+    for (int i = 0; moves && i < form.n(); ++i) {
+      if constexpr (!Form::small) {
+        if (i < form.nz() && is_massless(form.ws, i)) continue;
+      }
+      y[i] = step.y0()[i] + velocity[i] * (s * step.h);
+    }
+    return at(s, y) - start;
+  };
+  // free of the curvature
+  auto slope = [&](bool moves) { return (4 * off(0.5 * near, moves) - off(near, moves)) / near; };
+  const double leaves = slope(true), shown = slope(false);
+  return leaves > 0 && shown <= 0 ? leaves - shown : 0.0;
+}
+
 /// Where the law or the element of a branch leaves its piece, -1: not before what was hit; `who` leaves. Branch k has
 /// its rates in the motion, one below zero is at rest.
 template <class Form, class T = typename Form::Scalar>
@@ -20,7 +45,7 @@ template <class Form, class T = typename Form::Scalar>
   Workspace<T>& ws = form.ws;
   const int nz = form.nz();
   // round-off of a margin: a state at its limit has not passed it. docs/theory/events.md, rule 12
-  constexpr double noise = 1e-12;
+  constexpr double noise = 1e-12, fresh = 1e-9;
   const T still[most_ways] = {};
   auto at_end = [&](double t, const T* y, const T* f, const StepEnd<T>& edge) {
     inputs_of(form, t, y);
@@ -32,13 +57,19 @@ template <class Form, class T = typename Form::Scalar>
   const auto end = at_end(step.t + step.h, step.y1(), step.f1(), ws.step_end);
   if (is_ample(value(start.v), value(end.v), value(start.d[0]), value(end.d[0]), step.h)) return -1;
   fit(form, step);
+  auto margin = [&](double s, const T* y) {
+    inputs_of(form, step.t + s * step.h, y);
+    if (s > 0 && ws.in.n_rate_refs > 0) slopes_in(form, step, s);
+    T rate[most_ways] = {};
+    for (int w = 0; k >= 0 && w < b.ways; ++w) rate[w] = form.rate(k + w, y) + offset_rate(ws, k + w);
+    return value(law_margin(ws, b, rate, still, y + nz, step.f0() + nz, who).v);
+  };
+  const bool starts = abs(value(start.v)) <= fresh;
+  const double mend = starts ? missed_slope(form, step, value(start.v), margin) : 0.0;
   auto f = [&](double s) {
     interpolate(form, step, s, step.point());
-    inputs_of(form, step.t + s * step.h, step.point());
-    if (ws.in.n_rate_refs > 0) slopes_in(form, step, s);
-    T rate[most_ways] = {};
-    for (int w = 0; k >= 0 && w < b.ways; ++w) rate[w] = form.rate(k + w, step.point()) + offset_rate(ws, k + w);
-    return noise + value(law_margin(ws, b, rate, still, step.point() + nz, step.f0() + nz, who).v);
+    const double r = 1 - s;
+    return noise + margin(s, step.point()) + mend * s * r * r * r;
   };
   const double s = first_crossing(f, noise + value(start.v), noise + value(end.v), hit.s);
   if (hit.is_after(s)) f(s);
