@@ -342,7 +342,8 @@ void cw_margins(cw_run* run, double* margins) {
 }
 
 int cw_decide(cw_run* run, int anew, double* row, double* margins) {
-  if (run == nullptr || row == nullptr || margins == nullptr || !run->ws.started) return -1;
+  if (run == nullptr || row == nullptr || !run->ws.started) return -1;
+  if (margins == nullptr && count_margins(run->ws) > 0) return -1;
   return int(decide_placed(run->ws, anew != 0, row, margins));
 }
 

@@ -63,7 +63,10 @@ void take_placed(Workspace<T>& ws, double t, const double* x) {
 /// takes no step. The speeds are brought onto what is locked.
 template <class T>
 Status look_placed(Workspace<T>& ws, double* row) {
-  if (!enter_mode(ws, true)) return Status::no_mode;
+  ws.guard.is_placed = true;
+  const bool entered = enter_mode(ws, true);
+  ws.guard.is_placed = false;
+  if (!entered) return Status::no_mode;
   const double knot = ws.in.next_knot, last = ws.last_step;
   double t = ws.time;
   Sink sink;

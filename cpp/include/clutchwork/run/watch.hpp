@@ -41,7 +41,7 @@ void list_turn(Workspace<T>& ws, int k) {
   if ((b.law >= 0 && !b.compliant) || !law_turns(b)) return;
   const double rate = value(rate_of(ws, b.direction));
   int& heading = ws.heading[b.direction];
-  if (abs(rate) > slip_tolerance(ws)) heading = rate > 0 ? forward : backward;
+  if (!ws.guard.is_placed && abs(rate) > slip_tolerance(ws)) heading = rate > 0 ? forward : backward;
   ws.guard.line[ws.guard.n_lines++] = {LineGuard::turn, k, heading, 0.0};
 }
 
