@@ -251,7 +251,8 @@ double cw_next_knot(const cw_run* run) {
     const Signal& signal = run->ws.in.signal[i];
     std::int64_t k = run->ws.started ? signal.segment + (signal.idle ? 0 : 1) : 0;
     while (start.exist(k) && start(k) <= present(run->ws)) ++k;
-    if (start.exist(k) && k > 0) next = smaller(next, start(k));
+    // the first segment holds before its start too, but for one that repeats
+    if (start.exist(k) && (k > 0 || start.period > 0)) next = smaller(next, start(k));
   }
   return next;
 }

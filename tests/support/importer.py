@@ -69,11 +69,13 @@ class Exchanged(Instance):
 
 
 @contextmanager
-def exchanged(fmu: Fmu, values: Mapping[str, float] | None = None, *, log: bool = False) -> Iterator[Exchanged]:
+def exchanged(
+    fmu: Fmu, values: Mapping[str, float] | None = None, *, log: bool = False, tolerance: float | None = None
+) -> Iterator[Exchanged]:
     """An instance for model exchange that is initialised with values."""
     made = Exchanged(fmu, log=log)
     try:
-        made.begin(values or {}, start=float(fmu.description.defaultExperiment.startTime))
+        made.begin(values or {}, start=float(fmu.description.defaultExperiment.startTime), tolerance=tolerance)
         yield made
     finally:
         made.free()

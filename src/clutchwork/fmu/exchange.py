@@ -62,7 +62,15 @@ def exchange(system: System, known: Channels, variables: Sequence[FmuVariable]) 
 
 def exchange_faults(system: System, inputs: Sequence[FmuVariable], version: str) -> Iterator[str]:
     """Why a driveline cannot be an FMU for model exchange."""
-    speeds = set(system.prescribed_input.tolist())
+    found, speeds = wiring(system), set(system.prescribed_input.tolist())
+    for number in system.transmission_element.tolist():
+        yield f"'{found.elements[number].name}' has a ratio that varies, whose ties a solver does not keep"
+    for contact, place in zip(found.contacts, system.contact_place.tolist(), strict=True):
+        if place >= 0:
+            yield f"'{contact.name}' has impacts, after which a solver cannot tell whether it bounces or rests"
+    if speeds:
+        for number in system.load_contact.tolist():
+            yield f"the friction of '{found.contacts[number].name}' follows torques, beside a speed that is prescribed"
     for one in inputs:
         if version == "2.0" and speeds & set(one.inputs):
             yield f"'{one.name}' prescribes a speed, and FMI 2.0 has no rates of inputs there: take FMI 3.0"

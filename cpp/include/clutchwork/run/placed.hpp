@@ -60,11 +60,11 @@ void take_placed(Workspace<T>& ws, double t, const double* x) {
 }
 
 /// The motion of the present modes at the present point, with its row: where a phase stands that has just begun, and
-/// takes no step. The speeds are brought onto what is locked.
+/// takes no step. The speeds are brought onto what is locked. `decided`: the modes are new, and the phase begins.
 template <class T>
-Status look_placed(Workspace<T>& ws, double* row) {
-  ws.guard.is_placed = true;
-  const bool entered = enter_mode(ws, true);
+Status look_placed(Workspace<T>& ws, double* row, bool decided = false) {
+  ws.guard.is_placed = !decided;
+  const bool entered = enter_mode(ws, !decided);
   ws.guard.is_placed = false;
   if (!entered) return Status::no_mode;
   const double knot = ws.in.next_knot, last = ws.last_step;
@@ -140,8 +140,11 @@ void placed_margins(Workspace<T>& ws, double* z) {
     const LineGuard& g = ws.guard.line[i];
     // an open contact that turns decides nothing
     if (g.kind == LineGuard::pass) continue;
-    const double level = g.kind == LineGuard::slip ? 0.0 : g.level;
-    take(ws.branch[g.branch].direction, g.sign * (edge.rate[g.branch] - level) / (size + abs(level)));
+    // one that has just begun to slip is known no better than its solver knows it, and neither is a kink
+    const int d = ws.branch[g.branch].direction;
+    const bool is_slip = g.kind == LineGuard::slip, is_fresh = is_slip && ws.contact.forced[d - ne] != 0;
+    const double missed = !is_slip ? 0.1 * ws.options.rtol : is_fresh ? ws.options.rtol : 0.0;
+    take(d, g.sign * (edge.rate[g.branch] - g.level) / (size + abs(g.level)) + missed);
   }
   for (int a = 0; a < ws.held.n; ++a) {
     const int c = ws.held.contact[a];
@@ -199,6 +202,18 @@ void placed_margins(Workspace<T>& ws, double* z) {
 
 // ----------------------------------------------------------------------------------------------------------- decision
 
+/// Open contacts move the way they do, which nothing has watched: it is no event.
+template <class T>
+void direct_placed(Workspace<T>& ws) {
+  const int ne = int(ws.sys.elements);
+  const double zero = slip_tolerance(ws);
+  for (int c = 0; c < ws.sys.contacts; ++c) {
+    if (ws.contact.loaded[c] || ws.contact.compliant[c] || is_stop(ws, c)) continue;
+    const double slip = rate_of(ws, ne + c);
+    if (abs(slip) > zero) ws.contact.mode[c] = slip > 0 ? forward : backward;
+  }
+}
+
 /// Whether all margins where the motion was looked at are above zero.
 template <class T>
 bool all_hold(Workspace<T>& ws, double* margins) {
@@ -217,19 +232,24 @@ Status decide_placed(Workspace<T>& ws, bool anew, double* row, double* margins) 
   // a knot that is as good as reached is reached
   const bool due = ws.in.next_knot - t <= 1e3 * least * grain;
   const double start = due ? larger(t, ws.in.next_knot) : t;
+  direct_placed(ws);
   Status status = look_placed(ws, row);
   if (status != Status::done || (!anew && !due && !ws.params_changed && all_hold(ws, margins))) return status;
-  for (double span = least * grain; span <= most * grain; span *= 10) {
+  constexpr int rounds = 64;
+  double span = least * grain;
+  for (int round = 0; round < rounds && span <= most * grain; ++round) {
     ws.fresh_phase = true;
     if (anew || inputs_decide(ws)) ws.in.next_knot = -infinity;
     anew = false;
     Sink sink;
-    status = advance_by_events(ws, start + span, sink);
+    const int events = ws.events.n;
+    status = advance_by_events(ws, start + span, sink, true);
     if (status != Status::done) return status;
+    if (ws.events.n == events) span *= 10;
     ws.time = t;
     ws.in.time = -infinity;
     inputs_at(ws, t);
-    status = look_placed(ws, row);
+    status = look_placed(ws, row, ws.fresh_phase);
     if (status != Status::done || all_hold(ws, margins)) return status;
   }
   return status;

@@ -29,8 +29,10 @@ void list_slip(Workspace<T>& ws, int k) {
     const bool driven = is_rigid(ws, c) || (ws.ratios.n > 0 && value(ws.ratios.own[b.direction]) == 0);
     const double level = ws.contact.forced[c] == 0 && !driven ? value(ws.sys.contact_tolerance[c]) : 0.0;
     const bool outside = abs(slip) >= level * (1 - 1e-9);
-    ws.guard.line[ws.guard.n_lines++] = {LineGuard::slip, k, ws.contact.mode[c],
-                                         outside ? level * ws.contact.mode[c] : 0.0};
+    LineGuard& line = ws.guard.line[ws.guard.n_lines++];
+    // it is watched as it was where the phase has begun
+    const bool known = ws.guard.is_placed && line.kind == LineGuard::slip && line.branch == k;
+    line = {LineGuard::slip, k, ws.contact.mode[c], known ? line.level : outside ? level * ws.contact.mode[c] : 0.0};
   }
 }
 
