@@ -1,4 +1,5 @@
 #include <clutchwork/c_api.h>
+#include <clutchwork/run/placed.hpp>
 
 #include <new>
 #include "lanes.hpp"
@@ -246,9 +247,12 @@ double cw_next_knot(const cw_run* run) {
   for (std::int64_t i = 0; run != nullptr && i < run->ws.sys.inputs; ++i) {
     if (is_held(run->ws, int(i))) continue;
     const auto start = segments_of(run->ws, int(i)).start;
-    std::int64_t k = run->ws.started ? run->ws.in.signal[i].segment : 0;
+    // the present segment has begun, unless it waits for its first cycle
+    const Signal& signal = run->ws.in.signal[i];
+    std::int64_t k = run->ws.started ? signal.segment + (signal.idle ? 0 : 1) : 0;
     while (start.exist(k) && start(k) <= present(run->ws)) ++k;
-    if (start.exist(k) && k > 0) next = smaller(next, start(k));
+    // the first segment holds before its start too, but for one that repeats
+    if (start.exist(k) && (k > 0 || start.period > 0)) next = smaller(next, start(k));
   }
   return next;
 }
@@ -302,6 +306,46 @@ int cw_local(cw_run* run, double* row, double* matrix) {
   const int status = cw_row(run, row);
   if (status == int(Status::done)) fill_local(run->ws, matrix);
   return status;
+}
+
+void cw_place_size(const cw_run* run, std::int64_t* states, std::int64_t* margins) {
+  if (run == nullptr || states == nullptr || margins == nullptr) return;
+  *states = count_placed(run->ws), *margins = count_margins(run->ws);
+}
+
+void cw_states(const cw_run* run, double* x) {
+  if (run == nullptr || x == nullptr || !run->ws.started) return;
+  each_placed(const_cast<cw_run*>(run)->ws, [&](std::int64_t i, double& place) { x[i] = place; });
+}
+
+int cw_place_input(cw_run* run, std::int64_t input, double value, double slope) {
+  if (run == nullptr || !run->ws.started) return cw_set_input(run, input, value);
+  if (!is_finite(value) || !is_finite(slope) || input < 0 || input >= run->ws.sys.inputs) return 0;
+  place_input(run->ws, int(input), value, slope);
+  return 1;
+}
+
+int cw_place(cw_run* run, double t, const double* x, double* row) {
+  if (run == nullptr || x == nullptr || row == nullptr || !run->ws.started || !is_finite(t)) return -1;
+  for (std::int64_t i = 0; i < count_placed(run->ws); ++i) {
+    if (!is_finite(x[i])) return -1;
+  }
+  take_placed(run->ws, t, x);
+  return int(look_placed(run->ws, row));
+}
+
+void cw_rates(const cw_run* run, double* dx) {
+  if (run != nullptr && dx != nullptr && run->ws.started) placed_rates(run->ws, dx);
+}
+
+void cw_margins(cw_run* run, double* margins) {
+  if (run != nullptr && margins != nullptr && run->ws.started) placed_margins(run->ws, margins);
+}
+
+int cw_decide(cw_run* run, int anew, double* row, double* margins) {
+  if (run == nullptr || row == nullptr || !run->ws.started) return -1;
+  if (margins == nullptr && count_margins(run->ws) > 0) return -1;
+  return int(decide_placed(run->ws, anew != 0, row, margins));
 }
 
 std::int64_t cw_event_size(void) { return event_size; }

@@ -15,6 +15,7 @@ constexpr unsigned in(S... stages) {
 inline constexpr unsigned any_stage = ~0u;
 inline constexpr unsigned before_steps = in(Stage::instantiated, Stage::initialization);
 inline constexpr unsigned running = in(Stage::step, Stage::event);
+inline constexpr unsigned evaluated = running | in(Stage::initialization, Stage::terminated);
 
 inline constexpr const char* stage_names[] = {"instantiated", "in initialization mode", "in step mode", "in event mode",
                                               "terminated",   "stopped by an error"};

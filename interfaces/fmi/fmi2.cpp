@@ -3,7 +3,7 @@
 #include "calls.hpp"
 #include "files.hpp"
 
-/// The functions of FMI 2.0 for co-simulation, by names and types of the standard (https://fmi-standard.org).
+/// The functions of FMI 2.0, by names and types of the standard (https://fmi-standard.org).
 
 using namespace clutchwork::fmi;
 
@@ -47,9 +47,11 @@ void say(void* who, Answer answer, const char* category, const char* text) {
 
 Instance* of(void* c) { return c == nullptr ? nullptr : static_cast<Component*>(c)->instance; }
 
-int missing(void* c, const char* call) {
-  return int(allowed(of(c), any_stage, call, [&](Instance& it) {
-    return it.refuse(std::string(call) + " belongs to model exchange, which this FMU does not have");
+/// A call of model exchange.
+template <class Deed>
+int exchange(void* c, unsigned stages, const char* call, Deed&& deed) {
+  return int(allowed(of(c), stages, call, [&](Instance& it) {
+    return it.exchanges() ? deed(it) : it.refuse(std::string(call) + " is for instances of model exchange");
   }));
 }
 
@@ -101,11 +103,8 @@ FMI_EXPORT void* fmi2Instantiate(const char* name, int type, const char* guid, c
       new Component{callbacks != nullptr ? callbacks->logger : nullptr,
                     callbacks != nullptr ? callbacks->environment : nullptr, name != nullptr ? name : "", nullptr};
   const Listener listener{made, say};
-  if (type == 1) {
-    made->instance = Instance::make(resource_path(location), guid, listener);
-  } else {
-    say(made, Answer::error, category_names[0], "this FMU is for co-simulation, not for model exchange");
-  }
+  const Purpose purpose = type == 0 ? Purpose::model_exchange : Purpose::co_simulation;
+  made->instance = Instance::make(resource_path(location), guid, listener, purpose);
   if (made->instance == nullptr) {
     delete made;
     return nullptr;
@@ -132,7 +131,7 @@ FMI_EXPORT int fmi2EnterInitializationMode(void* c) {
 
 FMI_EXPORT int fmi2ExitInitializationMode(void* c) {
   return int(allowed(of(c), in(Stage::initialization), "fmi2ExitInitializationMode",
-                     [&](Instance& it) { return it.enter(Stage::step); }));
+                     [&](Instance& it) { return it.enter(it.exchanges() ? Stage::event : Stage::step); }));
 }
 
 FMI_EXPORT int fmi2Terminate(void* c) {
@@ -189,6 +188,7 @@ FMI_EXPORT int fmi2GetRealOutputDerivatives(void* c, const Reference*, std::size
 
 FMI_EXPORT int fmi2DoStep(void* c, double from, double size, int) {
   return int(allowed(of(c), in(Stage::step, Stage::failed), "fmi2DoStep", [&](Instance& it) {
+    if (it.exchanges()) return it.refuse("fmi2DoStep is for instances of co-simulation");
     const Answer answer = it.step(from, size, false).answer;
     if (answer == Answer::ok) it.forget_slopes();
     return answer;
@@ -243,21 +243,56 @@ FMI_EXPORT int fmi2GetDirectionalDerivative(void* c, const Reference*, std::size
   return none(c, "fmi2GetDirectionalDerivative", 1);
 }
 
-// --------------------------------------------------------------------------------- model exchange: there, and refused
+// ----------------------------------------------------------------------------------------------------- model exchange
 
-FMI_EXPORT int fmi2EnterEventMode(void* c) { return missing(c, "fmi2EnterEventMode"); }
-FMI_EXPORT int fmi2NewDiscreteStates(void* c, EventInfo*) { return missing(c, "fmi2NewDiscreteStates"); }
-FMI_EXPORT int fmi2EnterContinuousTimeMode(void* c) { return missing(c, "fmi2EnterContinuousTimeMode"); }
-FMI_EXPORT int fmi2CompletedIntegratorStep(void* c, int, int*, int*) {
-  return missing(c, "fmi2CompletedIntegratorStep");
+FMI_EXPORT int fmi2EnterEventMode(void* c) {
+  return exchange(c, in(Stage::step), "fmi2EnterEventMode", [](Instance& it) { return it.enter(Stage::event); });
 }
-FMI_EXPORT int fmi2SetTime(void* c, double) { return missing(c, "fmi2SetTime"); }
-FMI_EXPORT int fmi2SetContinuousStates(void* c, const double*, std::size_t) {
-  return missing(c, "fmi2SetContinuousStates");
+
+FMI_EXPORT int fmi2NewDiscreteStates(void* c, EventInfo* info) {
+  return exchange(c, in(Stage::event), "fmi2NewDiscreteStates", [&](Instance& it) {
+    if (info == nullptr) return it.refuse("fmi2NewDiscreteStates has no place for what it tells");
+    bool changed = false;
+    const Answer answer = it.decide(&changed);
+    *info = EventInfo{0, 0, 0, changed, it.has_next_knot(), it.next_knot()};
+    return answer;
+  });
 }
-FMI_EXPORT int fmi2GetDerivatives(void* c, double*, std::size_t) { return missing(c, "fmi2GetDerivatives"); }
-FMI_EXPORT int fmi2GetEventIndicators(void* c, double*, std::size_t) { return missing(c, "fmi2GetEventIndicators"); }
-FMI_EXPORT int fmi2GetContinuousStates(void* c, double*, std::size_t) { return missing(c, "fmi2GetContinuousStates"); }
-FMI_EXPORT int fmi2GetNominalsOfContinuousStates(void* c, double*, std::size_t) {
-  return missing(c, "fmi2GetNominalsOfContinuousStates");
+
+FMI_EXPORT int fmi2EnterContinuousTimeMode(void* c) {
+  return exchange(c, in(Stage::event), "fmi2EnterContinuousTimeMode",
+                  [](Instance& it) { return it.enter(Stage::step); });
+}
+
+FMI_EXPORT int fmi2CompletedIntegratorStep(void* c, int, int* event, int* terminate) {
+  return exchange(c, in(Stage::step), "fmi2CompletedIntegratorStep", [&](Instance&) {
+    if (event != nullptr) *event = 0;
+    if (terminate != nullptr) *terminate = 0;
+    return Answer::ok;
+  });
+}
+
+FMI_EXPORT int fmi2SetTime(void* c, double t) {
+  return exchange(c, running, "fmi2SetTime", [&](Instance& it) { return it.set_time(t); });
+}
+
+FMI_EXPORT int fmi2SetContinuousStates(void* c, const double* x, std::size_t n) {
+  return exchange(c, running, "fmi2SetContinuousStates", [&](Instance& it) { return it.set_states(x, n); });
+}
+
+FMI_EXPORT int fmi2GetDerivatives(void* c, double* dx, std::size_t n) {
+  return exchange(c, evaluated, "fmi2GetDerivatives", [&](Instance& it) { return it.rates(dx, n); });
+}
+
+FMI_EXPORT int fmi2GetEventIndicators(void* c, double* z, std::size_t n) {
+  return exchange(c, evaluated, "fmi2GetEventIndicators", [&](Instance& it) { return it.margins(z, n); });
+}
+
+FMI_EXPORT int fmi2GetContinuousStates(void* c, double* x, std::size_t n) {
+  return exchange(c, evaluated, "fmi2GetContinuousStates", [&](Instance& it) { return it.get_states(x, n); });
+}
+
+FMI_EXPORT int fmi2GetNominalsOfContinuousStates(void* c, double* sizes, std::size_t n) {
+  return exchange(c, evaluated, "fmi2GetNominalsOfContinuousStates",
+                  [&](Instance& it) { return it.nominals(sizes, n); });
 }

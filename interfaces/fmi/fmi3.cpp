@@ -3,7 +3,7 @@
 #include "calls.hpp"
 #include "files.hpp"
 
-/// The functions of FMI 3.0 for co-simulation, by names and types of the standard (https://fmi-standard.org).
+/// The functions of FMI 3.0, by names and types of the standard (https://fmi-standard.org).
 
 using namespace clutchwork::fmi;
 
@@ -39,7 +39,7 @@ int none(void* c, const char* call, std::size_t n, const char* why) {
 }
 
 constexpr const char* no_type = "no variable of this FMU has that type";
-constexpr const char* no_exchange = "this FMU is for co-simulation alone";
+constexpr const char* no_schedule = "this FMU has no scheduled execution";
 constexpr const char* no_clocks = "this FMU has no clocks";
 constexpr const char* no_derivatives = "this FMU gives no derivatives";
 
@@ -61,10 +61,22 @@ int get(void* c, const char* call, bool whole, const Reference* references, std:
   }));
 }
 
-/// An instance of a kind that these FMUs are not.
-void* refused(Logger logger, void* environment, const char* why) {
-  if (logger != nullptr) logger(environment, int(Answer::error), category_names[0], why);
-  return nullptr;
+/// A call of model exchange.
+template <class Deed>
+int exchange(void* c, unsigned stages, const char* call, Deed&& deed) {
+  return int(allowed(of(c), stages, call, [&](Instance& it) {
+    return it.exchanges() ? deed(it) : it.refuse(std::string(call) + " is for instances of model exchange");
+  }));
+}
+
+void* made(Component* component, const char* token, const char* location, bool logging, Purpose purpose) {
+  component->instance = Instance::make(resource_path(location), token, Listener{component, say}, purpose);
+  if (component->instance == nullptr) {
+    delete component;
+    return nullptr;
+  }
+  if (logging) component->instance->log(true, Category::events);
+  return component;
 }
 
 }  // namespace
@@ -87,24 +99,20 @@ FMI_EXPORT int fmi3SetDebugLogging(void* c, bool on, std::size_t n, const char* 
 FMI_EXPORT void* fmi3InstantiateCoSimulation(const char*, const char* token, const char* location, bool, bool logging,
                                              bool has_event_mode, bool may_return_early, const Reference*, std::size_t,
                                              void* environment, Logger logger, void*) {
-  auto* made = new Component{logger, environment, nullptr, has_event_mode, may_return_early};
-  made->instance = Instance::make(resource_path(location), token, Listener{made, say});
-  if (made->instance == nullptr) {
-    delete made;
-    return nullptr;
-  }
-  if (logging) made->instance->log(true, Category::events);
-  return made;
+  auto* component = new Component{logger, environment, nullptr, has_event_mode, may_return_early};
+  return made(component, token, location, logging, Purpose::co_simulation);
 }
 
-FMI_EXPORT void* fmi3InstantiateModelExchange(const char*, const char*, const char*, bool, bool, void* environment,
-                                              Logger logger) {
-  return refused(logger, environment, no_exchange);
+FMI_EXPORT void* fmi3InstantiateModelExchange(const char*, const char* token, const char* location, bool, bool logging,
+                                              void* environment, Logger logger) {
+  auto* component = new Component{logger, environment, nullptr, true, false};
+  return made(component, token, location, logging, Purpose::model_exchange);
 }
 
 FMI_EXPORT void* fmi3InstantiateScheduledExecution(const char*, const char*, const char*, bool, bool, void* environment,
                                                    Logger logger, void*, void*, void*) {
-  return refused(logger, environment, no_exchange);
+  if (logger != nullptr) logger(environment, int(Answer::error), category_names[0], no_schedule);
+  return nullptr;
 }
 
 FMI_EXPORT void fmi3FreeInstance(void* c) {
@@ -133,8 +141,9 @@ FMI_EXPORT int fmi3EnterEventMode(void* c) {
 }
 
 FMI_EXPORT int fmi3EnterStepMode(void* c) {
-  return int(
-      allowed(of(c), in(Stage::event), "fmi3EnterStepMode", [&](Instance& it) { return it.enter(Stage::step); }));
+  return int(allowed(of(c), in(Stage::event), "fmi3EnterStepMode", [&](Instance& it) {
+    return it.exchanges() ? it.refuse("fmi3EnterStepMode is for instances of co-simulation") : it.enter(Stage::step);
+  }));
 }
 
 FMI_EXPORT int fmi3Terminate(void* c) {
@@ -306,7 +315,7 @@ FMI_EXPORT int fmi3ExitConfigurationMode(void* c) {
   return none(c, "fmi3ExitConfigurationMode", 1, "this FMU has no structural parameters");
 }
 
-FMI_EXPORT int fmi3EvaluateDiscreteStates(void* c) { return none(c, "fmi3EvaluateDiscreteStates", 0, no_exchange); }
+FMI_EXPORT int fmi3EvaluateDiscreteStates(void* c) { return none(c, "fmi3EvaluateDiscreteStates", 0, ""); }
 
 FMI_EXPORT int fmi3UpdateDiscreteStates(void* c, bool* again, bool* terminate, bool* nominals, bool* states,
                                         bool* has_next, double* next) {
@@ -314,38 +323,64 @@ FMI_EXPORT int fmi3UpdateDiscreteStates(void* c, bool* again, bool* terminate, b
     for (bool* flag : {again, terminate, nominals, states, has_next})
       if (flag == nullptr) return it.refuse("fmi3UpdateDiscreteStates has no place for what it tells");
     *again = *terminate = *nominals = *states = false;
-    const double knot = it.next_knot();
-    *has_next = next != nullptr && knot > it.time() && knot < 1e300;
-    if (*has_next) *next = knot;
-    return Answer::ok;
+    const bool decides = it.exchanges() && it.stage() == Stage::event;
+    const Answer answer = decides ? it.decide(states) : Answer::ok;
+    *has_next = next != nullptr && it.has_next_knot();
+    if (*has_next) *next = it.next_knot();
+    return answer;
   }));
 }
 
-FMI_EXPORT int fmi3EnterContinuousTimeMode(void* c) { return none(c, "fmi3EnterContinuousTimeMode", 1, no_exchange); }
-FMI_EXPORT int fmi3CompletedIntegratorStep(void* c, bool, bool*, bool*) {
-  return none(c, "fmi3CompletedIntegratorStep", 1, no_exchange);
+// ----------------------------------------------------------------------------------------------------- model exchange
+
+FMI_EXPORT int fmi3EnterContinuousTimeMode(void* c) {
+  return exchange(c, in(Stage::event), "fmi3EnterContinuousTimeMode",
+                  [](Instance& it) { return it.enter(Stage::step); });
 }
-FMI_EXPORT int fmi3SetTime(void* c, double) { return none(c, "fmi3SetTime", 1, no_exchange); }
-FMI_EXPORT int fmi3SetContinuousStates(void* c, const double*, std::size_t) {
-  return none(c, "fmi3SetContinuousStates", 1, no_exchange);
+
+FMI_EXPORT int fmi3CompletedIntegratorStep(void* c, bool, bool* event, bool* terminate) {
+  return exchange(c, in(Stage::step), "fmi3CompletedIntegratorStep", [&](Instance&) {
+    if (event != nullptr) *event = false;
+    if (terminate != nullptr) *terminate = false;
+    return Answer::ok;
+  });
 }
-FMI_EXPORT int fmi3GetContinuousStateDerivatives(void* c, double*, std::size_t) {
-  return none(c, "fmi3GetContinuousStateDerivatives", 1, no_exchange);
+
+FMI_EXPORT int fmi3SetTime(void* c, double t) {
+  return exchange(c, running, "fmi3SetTime", [&](Instance& it) { return it.set_time(t); });
 }
-FMI_EXPORT int fmi3GetEventIndicators(void* c, double*, std::size_t) {
-  return none(c, "fmi3GetEventIndicators", 1, no_exchange);
+
+FMI_EXPORT int fmi3SetContinuousStates(void* c, const double* x, std::size_t n) {
+  return exchange(c, running, "fmi3SetContinuousStates", [&](Instance& it) { return it.set_states(x, n); });
 }
-FMI_EXPORT int fmi3GetContinuousStates(void* c, double*, std::size_t) {
-  return none(c, "fmi3GetContinuousStates", 1, no_exchange);
+
+FMI_EXPORT int fmi3GetContinuousStateDerivatives(void* c, double* dx, std::size_t n) {
+  return exchange(c, evaluated, "fmi3GetContinuousStateDerivatives", [&](Instance& it) { return it.rates(dx, n); });
 }
-FMI_EXPORT int fmi3GetNominalsOfContinuousStates(void* c, double*, std::size_t) {
-  return none(c, "fmi3GetNominalsOfContinuousStates", 1, no_exchange);
+
+FMI_EXPORT int fmi3GetEventIndicators(void* c, double* z, std::size_t n) {
+  return exchange(c, evaluated, "fmi3GetEventIndicators", [&](Instance& it) { return it.margins(z, n); });
 }
-FMI_EXPORT int fmi3GetNumberOfEventIndicators(void* c, std::size_t*) {
-  return none(c, "fmi3GetNumberOfEventIndicators", 1, no_exchange);
+
+FMI_EXPORT int fmi3GetContinuousStates(void* c, double* x, std::size_t n) {
+  return exchange(c, evaluated, "fmi3GetContinuousStates", [&](Instance& it) { return it.get_states(x, n); });
 }
-FMI_EXPORT int fmi3GetNumberOfContinuousStates(void* c, std::size_t*) {
-  return none(c, "fmi3GetNumberOfContinuousStates", 1, no_exchange);
+
+FMI_EXPORT int fmi3GetNominalsOfContinuousStates(void* c, double* sizes, std::size_t n) {
+  return exchange(c, any_stage, "fmi3GetNominalsOfContinuousStates",
+                  [&](Instance& it) { return it.nominals(sizes, n); });
+}
+
+FMI_EXPORT int fmi3GetNumberOfEventIndicators(void* c, std::size_t* n) {
+  return exchange(c, any_stage, "fmi3GetNumberOfEventIndicators", [&](Instance& it) {
+    return n == nullptr ? it.refuse("there is no place for the number") : (*n = it.margin_count(), Answer::ok);
+  });
+}
+
+FMI_EXPORT int fmi3GetNumberOfContinuousStates(void* c, std::size_t* n) {
+  return exchange(c, any_stage, "fmi3GetNumberOfContinuousStates", [&](Instance& it) {
+    return n == nullptr ? it.refuse("there is no place for the number") : (*n = it.state_count(), Answer::ok);
+  });
 }
 
 // -------------------------------------------------------------------------------------------------------------- steps
@@ -353,6 +388,7 @@ FMI_EXPORT int fmi3GetNumberOfContinuousStates(void* c, std::size_t*) {
 FMI_EXPORT int fmi3DoStep(void* c, double from, double size, bool, bool* event, bool* terminate, bool* early,
                           double* reached) {
   return int(allowed(of(c), in(Stage::step, Stage::failed), "fmi3DoStep", [&](Instance& it) {
+    if (it.exchanges()) return it.refuse("fmi3DoStep is for instances of co-simulation");
     const auto* component = static_cast<Component*>(c);
     const Stepped done = it.step(from, size, component->may_return_early);
     if (event != nullptr) *event = done.is_early && component->has_event_mode;

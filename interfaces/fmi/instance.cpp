@@ -30,11 +30,13 @@ double along(const Place& place, const Variable& one, double base, double value)
 
 }  // namespace
 
-Instance* Instance::make(const std::string& path, const char* token, Listener listener) {
-  auto* made = new Instance(listener);
+Instance* Instance::make(const std::string& path, const char* token, Listener listener, Purpose purpose) {
+  auto* made = new Instance(listener, purpose);
   std::string wrong = made->model_.load(path);
   if (wrong.empty() && (token == nullptr || made->model_.token != token))
     wrong = "the description of this FMU is that of another model: unpack the FMU again";
+  if (wrong.empty() && purpose == Purpose::model_exchange && !made->model_.exchanges)
+    wrong = "this FMU is for co-simulation, not for model exchange";
   if (!wrong.empty()) {
     made->refuse(wrong);
     delete made;
@@ -45,6 +47,10 @@ Instance* Instance::make(const std::string& path, const char* token, Listener li
   made->before_.resize(made->memory_.size());
   made->row_.resize(model.row.size());
   made->reset();
+  std::int64_t states = 0, margins = 0;
+  if (made->put(made->now_.value)) cw_place_size(made->run(), &states, &margins);
+  made->rates_.resize(std::size_t(states)), made->margins_.resize(std::size_t(margins));
+  made->now_.x.resize(std::size_t(states));
   return made;
 }
 
@@ -131,7 +137,9 @@ Answer Instance::initialize() {
 
 Answer Instance::enter(Stage stage) {
   if (stage != Stage::terminated && !now_.is_loaded && !load()) return Answer::error;
-  is_seen_ = is_seen_ && stage != Stage::event && now_.stage != Stage::event;
+  if (exchanges() && now_.stage == Stage::initialization && stage == Stage::event)
+    return begin() ? Answer::ok : Answer::error;
+  is_seen_ = is_seen_ && (exchanges() || (stage != Stage::event && now_.stage != Stage::event));
   now_.stage = stage;
   return Answer::ok;
 }
@@ -143,6 +151,7 @@ void Instance::reset() {
   now_.loaded = now_.value;
   now_.on_line.assign(now_.value.size(), 0.0);
   now_.slopes.assign(orders * now_.value.size(), 0.0);
+  now_.x.assign(rates_.size(), 0.0);
   is_seen_ = false;
 }
 
@@ -179,6 +188,8 @@ bool Instance::load() {
     if (one.kind != Kind::input || now_.value[k] == one.start) continue;
     for (std::int64_t input : one.inputs) cw_set_input(run(), input, now_.value[k]);
   }
+  // steps of one length are those of the importer, if any
+  if (exchanges() && model_.is_fixed()) cw_set_option(run(), "method", 0);
   cw_expect_inputs(run(), 1);
   now_.loaded = now_.value;
   now_.is_loaded = true;
@@ -198,6 +209,8 @@ Answer Instance::check(std::uint32_t reference, double value) const {
   if (!is_given(*one)) return refuse("'" + one->name + "' is a result, which cannot be set");
   if (one->kind == Kind::fixed && is_begun())
     return refuse("'" + one->name + "' is fixed once the run has begun: set it before, or reset the instance");
+  if (one->kind == Kind::tunable && is_placed() && now_.stage == Stage::step)
+    return refuse("'" + one->name + "' may change in event mode alone");
   if (now_.stage == Stage::terminated) return refuse("the run is over: reset the instance");
   if (!std::isfinite(value))
     return say(Answer::discard, Category::error, "'" + one->name + "' must be a finite number");
@@ -217,9 +230,10 @@ Answer Instance::set(std::uint32_t reference, double value) {
   is_seen_ = false;
   if (!is_begun()) return now_.is_loaded = false, Answer::ok;
   bool done = true;
+  now_.is_anew = now_.is_anew || (is_placed() && now_.stage == Stage::event);
   if (one.kind == Kind::tunable)
     for (const Place& place : one.params) done = cw_set_param(run(), place.number, along(place, one, 0, value)) && done;
-  else
+  else if (!is_placed())
     for (std::int64_t input : one.inputs) done = cw_set_input(run(), input, value) && done;
   return done ? Answer::ok : refuse("'" + one.name + "' was not taken: export the model again");
 }
@@ -233,6 +247,11 @@ Answer Instance::get(std::uint32_t reference, double* value) {
     return Answer::ok;
   }
   if (is_given(*one)) return *value = now_.value[reference], Answer::ok;
+  if (one->kind == Kind::rate || one->kind == Kind::margin) {
+    if (!(is_seen_ && is_rated_) && !look()) return Answer::error;
+    if (one->kind == Kind::margin) return *value = margins_[std::size_t(one->of)], Answer::ok;
+    return *value = rates_[std::size_t(model_.states[std::size_t(one->of)].number)], Answer::ok;
+  }
   if (!is_seen_ && !look()) return Answer::error;
   *value = model_.forms[std::size_t(one->of)](row_.data());
   return Answer::ok;
@@ -254,6 +273,7 @@ Answer Instance::set_slope(std::uint32_t input, int order, double value) {
 bool Instance::look() {
   if (!load()) return false;
   if (now_.stage == Stage::failed) return refuse("the run has stopped: reset the instance"), false;
+  if (is_placed()) return place();
   const std::int64_t n = cw_copy(run(), before_.data(), std::int64_t(before_.size()));
   const std::vector<double> lines = now_.on_line;
   give_inputs();
@@ -262,9 +282,12 @@ bool Instance::look() {
   const int status = cw_row(run(), row_.data());
   cw_expect_inputs(run(), 1);
   if (status != int(Status::done)) refuse(told(status));
+  cw_rates(run(), rates_.data());
+  cw_margins(run(), margins_.data());
+  if (exchanges()) cw_states(run(), now_.x.data());
   cw_paste(run(), before_.data(), n);
   now_.on_line = lines;
-  return is_seen_ = status == int(Status::done);
+  return is_seen_ = is_rated_ = status == int(Status::done);
 }
 
 // -------------------------------------------------------------------------------------------------------------- steps
@@ -341,7 +364,7 @@ Stepped Instance::step(double from, double size, bool may_return_early) {
   while (status == int(Status::done) && !is_early && filled == 0) {
     take_events();
     status = cw_advance(run(), end, &end, row_.data(), 1, 0, &filled);
-    is_seen_ = filled > 0;
+    is_seen_ = filled > 0, is_rated_ = false;
     if (status == int(Status::events_full)) status = int(Status::done);
   }
   take_events();
@@ -355,6 +378,103 @@ Answer Instance::stop(int status) {
   now_.stage = Stage::failed;
   is_seen_ = false;
   return refuse(told(status));
+}
+
+// ----------------------------------------------------------------------------------------------------- model exchange
+
+/// The motion at the time and the state of the importer; inputs go on smoothly.
+bool Instance::place() {
+  for (std::size_t k = 0; k < model_.variables.size(); ++k) {
+    const Variable& one = model_.variables[k];
+    if (one.kind != Kind::input) continue;
+    for (std::int64_t input : one.inputs) cw_place_input(run(), input, now_.value[k], now_.slopes[orders * k]);
+  }
+  const int status = cw_place(run(), now_.time, now_.x.data(), row_.data());
+  if (status != int(Status::done)) return refuse(status < 0 ? "the state is not a number" : told(status)), false;
+  cw_rates(run(), rates_.data());
+  cw_margins(run(), margins_.data());
+  return is_seen_ = is_rated_ = true;
+}
+
+/// The run at its start, in event mode.
+bool Instance::begin() {
+  const int status = cw_row(run(), row_.data());
+  if (status != int(Status::done)) return stop(status), false;
+  cw_states(run(), now_.x.data());
+  now_.time = cw_time(run()), now_.stage = Stage::event;
+  return is_seen_ = false, true;
+}
+
+bool Instance::has_room(const double* numbers, std::size_t n, std::size_t wanted, const char* what) const {
+  if (n == wanted && (n == 0 || numbers != nullptr)) return true;
+  refuse("there are " + std::to_string(wanted) + " " + what + ", not " + std::to_string(n));
+  return false;
+}
+
+std::size_t Instance::margin_count() const { return margins_.size(); }
+
+Answer Instance::set_time(double t) {
+  if (!std::isfinite(t)) return refuse("the time is not a number");
+  is_seen_ = is_seen_ && t == now_.time;
+  now_.time = t;
+  return Answer::ok;
+}
+
+Answer Instance::set_states(const double* x, std::size_t n) {
+  if (!has_room(x, n, state_count(), "continuous states")) return Answer::error;
+  for (std::size_t i = 0; i < n; ++i) {
+    double& place = now_.x[std::size_t(model_.states[i].number)];
+    is_seen_ = is_seen_ && place == x[i];
+    place = x[i];
+  }
+  return Answer::ok;
+}
+
+Answer Instance::get_states(double* x, std::size_t n) {
+  if (!has_room(x, n, state_count(), "continuous states")) return Answer::error;
+  if (!is_placed() && !is_seen_ && !look()) return Answer::error;
+  for (std::size_t i = 0; i < n; ++i) x[i] = now_.x[std::size_t(model_.states[i].number)];
+  return Answer::ok;
+}
+
+Answer Instance::rates(double* dx, std::size_t n) {
+  if (!has_room(dx, n, state_count(), "continuous states")) return Answer::error;
+  if (!(is_seen_ && is_rated_) && !look()) return is_begun() ? Answer::discard : Answer::error;
+  for (std::size_t i = 0; i < n; ++i) dx[i] = rates_[std::size_t(model_.states[i].number)];
+  return Answer::ok;
+}
+
+Answer Instance::margins(double* z, std::size_t n) {
+  if (!has_room(z, n, margin_count(), "event indicators")) return Answer::error;
+  if (!(is_seen_ && is_rated_) && !look()) return is_begun() ? Answer::discard : Answer::error;
+  for (std::size_t i = 0; i < n; ++i) z[i] = margins_[i];
+  return Answer::ok;
+}
+
+Answer Instance::nominals(double* sizes, std::size_t n) const {
+  if (!has_room(sizes, n, state_count(), "continuous states")) return Answer::error;
+  for (std::size_t i = 0; i < n; ++i) sizes[i] = model_.states[i].nominal;
+  return Answer::ok;
+}
+
+/// What is due at this instant, decided by the core for all contacts together.
+Answer Instance::decide(bool* changed) {
+  *changed = false;
+  if (!place()) return now_.stage = Stage::failed, Answer::error;
+  std::int64_t before[n_statistics], after[n_statistics];
+  give_budget();
+  take_events();
+  cw_statistics(run(), before);
+  const int status = cw_decide(run(), now_.is_anew, row_.data(), margins_.data());
+  cw_statistics(run(), after);
+  take_events();
+  if (status != int(Status::done)) return stop(status);
+  now_.is_anew = false;
+  is_seen_ = false;
+  // without a step nothing was due
+  *changed = after[0] + after[1] > before[0] + before[1];
+  if (*changed) cw_states(run(), now_.x.data());
+  return Answer::ok;
 }
 
 // ------------------------------------------------------------------------------------------------------------- states
@@ -388,8 +508,8 @@ Answer Instance::go_to(const State& state) {
 
 namespace {
 
-constexpr std::uint64_t state_magic = 0x3145544154534d46u;  // FMSTATE1
-constexpr std::int64_t state_words = 8;
+constexpr std::uint64_t state_magic = 0x3245544154534d46u;  // FMSTATE2
+constexpr std::int64_t state_words = 10;
 
 std::uint64_t checksum(const unsigned char* bytes, std::int64_t n) {
   std::uint64_t h = 0xcbf29ce484222325u;
@@ -405,7 +525,8 @@ void append(std::vector<unsigned char>& to, const void* from, std::size_t n) {
 }  // namespace
 
 /// magic, checksum of all after it, fingerprint of the token, stage, whether a run follows, t_start, rtol, number of
-/// values; values, loaded values, lines, derivatives, then the saved state of the core.
+/// values, time of the importer, whether something was set in event mode; values, loaded values, lines, derivatives,
+/// the state of the importer, then the saved state of the core.
 std::vector<unsigned char> Instance::serialized(const State& state) {
   std::vector<unsigned char> saved;
   if (state.is_loaded) {
@@ -426,11 +547,14 @@ std::vector<unsigned char> Instance::serialized(const State& state) {
       std::uint64_t(state.is_loaded),
       0,
       0,
-      std::uint64_t(state.value.size())};
+      std::uint64_t(state.value.size()),
+      0,
+      std::uint64_t(state.is_anew)};
   std::vector<unsigned char> made;
   append(made, words, sizeof words);
   std::memcpy(made.data() + 40, &state.t_start, 8), std::memcpy(made.data() + 48, &state.rtol, 8);
-  for (const auto* part : {&state.value, &state.loaded, &state.on_line, &state.slopes})
+  std::memcpy(made.data() + 64, &state.time, 8);
+  for (const auto* part : {&state.value, &state.loaded, &state.on_line, &state.slopes, &state.x})
     append(made, part->data(), 8 * part->size());
   append(made, saved.data(), saved.size());
   const std::uint64_t sum = checksum(made.data() + 16, std::int64_t(made.size()) - 16);
@@ -440,9 +564,10 @@ std::vector<unsigned char> Instance::serialized(const State& state) {
 
 /// Whether every number of a state, but for those of its run, is one that an instance may have.
 bool Instance::is_possible(const State& state) const {
-  bool fits = std::isfinite(state.t_start) && state.rtol >= 0 && state.rtol < 1;
+  bool fits = std::isfinite(state.t_start) && std::isfinite(state.time) && state.rtol >= 0 && state.rtol < 1;
   fits = fits && (state.is_loaded || int(state.stage) < int(Stage::step));
   for (double slope : state.slopes) fits = fits && std::isfinite(slope);
+  for (double x : state.x) fits = fits && std::isfinite(x);
   for (std::size_t k = 0; k < model_.variables.size(); ++k) {
     const Variable& one = model_.variables[k];
     fits = fits && (state.on_line[k] == 0 || (state.on_line[k] == 1 && one.kind == Kind::input));
@@ -462,14 +587,16 @@ State* Instance::deserialized(const unsigned char* bytes, std::int64_t n) {
       words[0] == state_magic && words[1] == checksum(bytes + 16, n - 16) &&
       words[2] == checksum(reinterpret_cast<const unsigned char*>(token.data()), std::int64_t(token.size())) &&
       words[3] <= std::uint64_t(Stage::failed) && words[4] <= 1 && words[7] == now_.value.size();
-  const auto count = std::int64_t(now_.value.size()), at = std::int64_t(sizeof words) + 8 * count * (3 + orders);
+  const auto count = std::int64_t(now_.value.size()),
+             at = std::int64_t(sizeof words) + 8 * (count * (3 + orders) + std::int64_t(now_.x.size()));
   if (!is_own || n < at) return refuse(damaged), nullptr;
   auto made = std::make_unique<State>();
-  made->stage = Stage(words[3]), made->is_loaded = words[4] == 1;
+  made->stage = Stage(words[3]), made->is_loaded = words[4] == 1, made->is_anew = words[9] != 0;
   std::memcpy(&made->t_start, bytes + 40, 8), std::memcpy(&made->rtol, bytes + 48, 8);
+  std::memcpy(&made->time, bytes + 64, 8);
   const unsigned char* from = bytes + sizeof words;
-  for (auto* part : {&made->value, &made->loaded, &made->on_line, &made->slopes}) {
-    part->resize(std::size_t(part == &made->slopes ? orders * count : count));
+  for (auto* part : {&made->value, &made->loaded, &made->on_line, &made->slopes, &made->x}) {
+    part->resize(part == &made->x ? now_.x.size() : std::size_t(part == &made->slopes ? orders * count : count));
     std::memcpy(part->data(), from, 8 * part->size());
     from += 8 * part->size();
   }

@@ -25,6 +25,9 @@ struct Listener {
 /// Where an instance is in its life.
 enum class Stage { instantiated, initialization, step, event, terminated, failed };
 
+/// Who takes the steps: the instance, or the importer by the rates that it gets.
+enum class Purpose { co_simulation, model_exchange };
+
 /// Everything of an instance that a state holds.
 struct State {
   Stage stage = Stage::instantiated;
@@ -35,6 +38,9 @@ struct State {
   std::vector<double> loaded;      ///< values with which the run was loaded
   std::vector<double> on_line;     ///< 1 for an input that the core has as a line, else 0
   std::vector<double> slopes;      ///< three of each variable: derivatives of an input over the coming step
+  double time = 0;                 ///< [s] model exchange: of the importer
+  bool is_anew = false;            ///< inputs or parameters were set in event mode
+  std::vector<double> x;           ///< the state of the core, of which continuous states are some numbers
   std::vector<unsigned char> run;  ///< a copy of the run, where it is loaded
 };
 
@@ -47,7 +53,7 @@ struct Stepped {
 class Instance {
  public:
   /// The instance of a resource, or null with what is wrong in the log.
-  static Instance* make(const std::string& path, const char* token, Listener listener);
+  static Instance* make(const std::string& path, const char* token, Listener listener, Purpose purpose);
 
   // what is in the log
   Answer say(Answer answer, Category category, const std::string& text) const;
@@ -57,7 +63,8 @@ class Instance {
   // life
   Stage stage() const { return now_.stage; }
   const Model& model() const { return model_; }
-  double time() const { return now_.is_loaded ? cw_time(run()) : now_.t_start; }
+  bool exchanges() const { return purpose_ == Purpose::model_exchange; }
+  double time() const { return !now_.is_loaded ? now_.t_start : is_placed() ? now_.time : cw_time(run()); }
   Answer experiment(double t_start, bool has_tolerance, double tolerance);
   Answer initialize();
   Answer enter(Stage stage);
@@ -73,7 +80,19 @@ class Instance {
   // steps; at an early return the run is right after an event
   Stepped step(double from, double size, bool may_return_early);
   void forget_slopes();
+  bool has_next_knot() const { return next_knot() > time() && next_knot() < 1e300; }
   double next_knot() const { return now_.is_loaded ? cw_next_knot(run()) : cw_next_knot(nullptr); }
+
+  // model exchange
+  std::size_t state_count() const { return model_.states.size(); }
+  std::size_t margin_count() const;
+  Answer set_time(double t);
+  Answer set_states(const double* x, std::size_t n);
+  Answer get_states(double* x, std::size_t n);
+  Answer rates(double* dx, std::size_t n);
+  Answer margins(double* z, std::size_t n);
+  Answer nominals(double* sizes, std::size_t n) const;
+  Answer decide(bool* changed);
 
   // states
   State* state();
@@ -82,16 +101,21 @@ class Instance {
   State* deserialized(const unsigned char* bytes, std::int64_t n);
 
  private:
-  explicit Instance(Listener listener) : listener_(listener) {}
+  Instance(Listener listener, Purpose purpose) : listener_(listener), purpose_(purpose) {}
 
   cw_run* run() const { return run_; }
   bool is_begun() const { return now_.stage != Stage::instantiated && now_.stage != Stage::initialization; }
+  /// Whether time and state are those of the importer.
+  bool is_placed() const { return exchanges() && is_begun(); }
   std::string told(int status) const;
   bool is_possible(const State& state) const;
   bool load();
   bool put(const std::vector<double>& values);
   bool is_line(std::size_t input) const;
   bool look();
+  bool place();
+  bool begin();
+  bool has_room(const double* numbers, std::size_t n, std::size_t wanted, const char* what) const;
   void give_inputs();
   void follow_slopes(double seconds);
   void give_budget();
@@ -99,13 +123,15 @@ class Instance {
   Answer stop(int status);
 
   Listener listener_;
+  Purpose purpose_;
   bool is_logged_[categories] = {true, true, false};
   Model model_;
   State now_;
   std::vector<unsigned char> system_, memory_, before_;
-  std::vector<double> row_, events_;
+  std::vector<double> row_, events_, rates_, margins_;
   cw_run* run_ = nullptr;
-  bool is_seen_ = false;  ///< the row is that of the present time
+  bool is_seen_ = false;   ///< the row is that of the present time
+  bool is_rated_ = false;  ///< and so are the rates
 };
 
 }  // namespace clutchwork::fmi

@@ -1,6 +1,7 @@
 #include "model.hpp"
 
 #include <clutchwork/c_api.h>
+#include <clutchwork/workspace/settings.hpp>
 
 #include <cmath>
 #include "files.hpp"
@@ -10,7 +11,7 @@ namespace clutchwork::fmi {
 
 namespace {
 
-constexpr char magic[8] = {'C', 'W', 'F', 'M', 'U', '0', '0', '2'};
+constexpr char magic[8] = {'C', 'W', 'F', 'M', 'U', '0', '0', '3'};
 constexpr std::int64_t many = std::int64_t(1) << 40;
 
 /// A checksum of words.
@@ -73,10 +74,12 @@ std::vector<std::string> texts(Reader& from) {
 /// Whether what variables refer to is there.
 bool is_joined(const Model& model) {
   const auto variables = std::int64_t(model.variables.size()), forms = std::int64_t(model.forms.size());
+  const auto states = std::int64_t(model.states.size());
   for (const Variable& one : model.variables) {
     if (one.kind == Kind::slope && (one.of < 0 || one.of >= variables || one.order < 1)) return false;
     if (one.kind == Kind::slope && model.variables[std::size_t(one.of)].kind != Kind::input) return false;
     if ((one.kind == Kind::signal || one.kind == Kind::mode) && (one.of < 0 || one.of >= forms)) return false;
+    if (one.kind == Kind::rate && (one.of < 0 || one.of >= states)) return false;
   }
   return true;
 }
@@ -104,6 +107,13 @@ double Form::operator()(const double* row) const {
   double sum = terms.empty() ? 0.0 : terms[0](row);
   for (std::size_t k = 1; k < terms.size(); ++k) sum += terms[k](row);
   return sum;
+}
+
+bool Model::is_fixed() const {
+  for (const Option& option : options) {
+    if (option.name == "method" && option.value == double(Method::fixed)) return true;
+  }
+  return false;
 }
 
 std::string Model::load(const std::string& path) {
@@ -142,6 +152,9 @@ std::string Model::read(const std::vector<unsigned char>& bytes) {
   statuses.resize(std::size_t(from.count(16)));
   for (Sentence& one : statuses) one.message = from.text(), one.remedy = from.text();
   causes = texts(from), modes = texts(from);
+  exchanges = from.integer(0, 1) != 0;
+  states.resize(std::size_t(from.count(16)));
+  for (ContinuousState& one : states) one.number = from.integer(0, many), one.nominal = from.number();
   const bool fits = cw_size(system.data(), std::int64_t(system.size())) > 0 && std::int64_t(row.size()) == row_size;
   return from.is_at_end() && fits && is_joined(*this) ? "" : damaged;
 }

@@ -6,8 +6,8 @@
 /// What the resource of an FMU says of its model: docs/guide/fmu.md.
 namespace clutchwork::fmi {
 
-enum class Kind { time, input, slope, tunable, fixed, signal, mode };
-inline constexpr int kinds = 7;
+enum class Kind { time, input, slope, tunable, fixed, signal, mode, rate, margin };
+inline constexpr int kinds = 9;
 
 /// A number in the bytes of the System, or in the pool of parameters, that follows a value along a straight line.
 struct Place {
@@ -20,7 +20,8 @@ struct Variable {
   std::string name;
   std::string bounds;  ///< in words
   double start, least, most;
-  std::int64_t of;                   ///< a slope: its input; a signal or mode: its form
+  std::int64_t of;                   ///< a slope: its input; a signal or mode: its form; a rate: its continuous state;
+                                     ///< a margin: its number
   std::int64_t order;                ///< of a slope
   std::vector<std::int64_t> inputs;  ///< numbers in the core
   std::vector<Place> words;          ///< before a run
@@ -67,6 +68,12 @@ struct Part {
   Sentence jam;
 };
 
+/// A continuous state: a number of the state of the core.
+struct ContinuousState {
+  std::int64_t number;
+  double nominal;
+};
+
 struct Model {
   std::string token;
   std::vector<unsigned char> system;
@@ -79,6 +86,11 @@ struct Model {
   std::vector<std::string> row, inputs, crowded;  ///< names
   std::vector<Sentence> statuses;
   std::vector<std::string> causes, modes;  ///< words by number; modes from the least one on
+  bool exchanges;                          ///< it is for model exchange too
+  std::vector<ContinuousState> states;     ///< continuous ones
+
+  /// Whether it has steps of one length.
+  bool is_fixed() const;
 
   /// Read from a file; what is wrong with it, empty where nothing is.
   std::string load(const std::string& path);

@@ -48,10 +48,13 @@ class Fmu:
 class Instance:
     """An instance, alike for both versions of FMI."""
 
+    kinds: tuple[Any, Any] = (FMU2Slave, FMU3Slave)
+    interface = "coSimulation"
+
     def __init__(self, fmu: Fmu, *, log: bool, event_mode: bool = False, early_return: bool = False) -> None:
         self.fmu, self.messages = fmu, list[tuple[int, str, str]]()
-        model = fmu.description.coSimulation.modelIdentifier
-        kind = FMU2Slave if fmu.version == "2.0" else FMU3Slave
+        model = getattr(fmu.description, self.interface).modelIdentifier
+        kind = self.kinds[fmu.version != "2.0"]
         self.raw = kind(
             guid=fmu.description.guid, unzipDirectory=str(fmu.folder), modelIdentifier=model, instanceName="one"
         )
@@ -62,9 +65,9 @@ class Instance:
             addLoggerProxy(ctypes.byref(self._callbacks))
             self.raw.instantiate(callbacks=self._callbacks, loggingOn=log)
         else:
-            self.raw.instantiate(
-                loggingOn=log, eventModeUsed=event_mode, earlyReturnAllowed=early_return, logMessage=self._log_three()
-            )
+            steps = {"eventModeUsed": event_mode, "earlyReturnAllowed": early_return}
+            more = steps if self.interface == "coSimulation" else {}
+            self.raw.instantiate(loggingOn=log, logMessage=self._log_three(), **more)
 
     def _log_two(self, environment: Any, name: bytes, status: int, category: bytes, message: bytes, *_: Any) -> None:
         self.messages.append((status, category.decode(), message.decode()))

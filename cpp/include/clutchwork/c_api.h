@@ -118,6 +118,31 @@ int cw_row(cw_run* run, double* row);
 void cw_local_size(const cw_run* run, int64_t* rows, int64_t* columns);
 int cw_local(cw_run* run, double* row, double* matrix);
 
+/* Model exchange: another solver has time and state, the run has the modes. docs/theory/model-exchange.md
+   Numbers of the state (speeds, states, angles, works) and of the margins; nothing for null pointers. */
+void cw_place_size(const cw_run* run, int64_t* states, int64_t* margins);
+
+/* The present state; nothing before the first row, or for null pointers. */
+void cw_states(const cw_run* run, double* x);
+
+/* As cw_set_input, but for a signal that goes on smoothly, with a time derivative: nothing is decided. 1: set; 0: as
+   there. */
+int cw_place_input(cw_run* run, int64_t input, double value, double slope);
+
+/* Take time and state, modes held and signals on their segments, and give the row there: a status as of cw_advance; -1:
+   refused because a number is not finite, before the first row, or for a null pointer. The state is not checked. The
+   speeds are then those on which what is locked has no slip: see cw_states. */
+int cw_place(cw_run* run, double t, const double* x, double* row);
+
+/* After cw_place: the time derivative of the state, and the margins: above zero while nothing needs a decision.
+   Nothing for null pointers. */
+void cw_rates(const cw_run* run, double* dx);
+void cw_margins(cw_run* run, double* margins);
+
+/* After cw_place: decide what is due, all contacts together; `anew`: signals may have jumped here. The time stays, the
+   state may be another one; the row and the margins are those after it. A status as of cw_advance. The events wait. */
+int cw_decide(cw_run* run, int anew, double* row, double* margins);
+
 /* Numbers in one event. */
 int64_t cw_event_size(void);
 

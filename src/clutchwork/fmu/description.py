@@ -7,7 +7,7 @@ from math import isfinite
 from xml.etree.ElementTree import Element, SubElement, indent, tostring
 
 from clutchwork.base.bounds import plain
-from clutchwork.fmu.interface import Interface
+from clutchwork.fmu.interface import CO_SIMULATION, MODEL_EXCHANGE, Interface
 from clutchwork.fmu.units import add_units, unit_attributes
 from clutchwork.fmu.variables import FmuVariable, VariableKind
 
@@ -32,7 +32,7 @@ def description(made: Interface, identifier: str, token: str, version: str, tool
         root.set(name, value)
     root.set("variableNamingConvention", "structured" if all(map(is_ascii, _names(made))) else "flat")
     if version == "2.0":
-        root.set("numberOfEventIndicators", "0")
+        root.set("numberOfEventIndicators", str(len(made.of(VariableKind.MARGIN))))
     (_add_three if version == "3.0" else _add_two)(root, made, identifier)
     indent(root)
     content: bytes = tostring(root, encoding="utf-8")
@@ -94,7 +94,7 @@ def _role(one: FmuVariable) -> dict[str, str]:
     if one.kind is VariableKind.TIME:
         return {"causality": "independent", "variability": "continuous"}
     variability = "discrete" if one.kind is VariableKind.MODE else "continuous"
-    return {"causality": "output", "variability": variability, "initial": "calculated"}
+    return {"causality": "local" if one.hidden else "output", "variability": variability, "initial": "calculated"}
 
 
 def _number(one: FmuVariable) -> dict[str, str]:
@@ -105,7 +105,8 @@ def _number(one: FmuVariable) -> dict[str, str]:
         name: repr(value) for name, value in zip(("min", "max"), plain(one.bounds), strict=True) if isfinite(value)
     }
     given = one.kind in (VariableKind.INPUT, VariableKind.SLOPE, VariableKind.TUNABLE, VariableKind.FIXED)
-    return unit_attributes(one.unit) | bounds | ({"start": repr(one.start)} if given else {})
+    size = {"nominal": repr(one.nominal)} if one.nominal else {}
+    return unit_attributes(one.unit) | bounds | size | ({"start": repr(one.start)} if given else {})
 
 
 def _dependencies(one: FmuVariable, is_output: bool) -> dict[str, str]:
@@ -117,66 +118,90 @@ def _units(made: Interface) -> list[str]:
     return [one.unit for one in made.variables if one.kind is not VariableKind.MODE]
 
 
+def _outputs(made: Interface) -> list[tuple[int, FmuVariable]]:
+    return [(number, one) for number, one in made.of(VariableKind.SIGNAL, VariableKind.MODE) if not one.hidden]
+
+
+def _unknowns(made: Interface) -> list[int]:
+    """Value references of what is computed at the start: outputs, continuous states and their rates."""
+    more = {number for state in made.states for number in (state.variable, state.rate)}
+    return sorted({number for number, _ in _outputs(made)} | more)
+
+
 # ------------------------------------------------------------------------------------------------------------- FMI 2.0
+
+STATES_TWO = {"canGetAndSetFMUstate": "true", "canSerializeFMUstate": "true"}
 
 
 def _add_two(root: Element, made: Interface, identifier: str) -> None:
-    SubElement(
-        root,
-        "CoSimulation",
-        modelIdentifier=identifier,
-        canHandleVariableCommunicationStepSize="true",
-        canInterpolateInputs="true",
-        maxOutputDerivativeOrder="0",
-        canNotUseMemoryManagementFunctions="true",
-        canGetAndSetFMUstate="true",
-        canSerializeFMUstate="true",
-    )
+    common = {"modelIdentifier": identifier, "canNotUseMemoryManagementFunctions": "true"} | STATES_TWO
+    if MODEL_EXCHANGE in made.kinds:
+        SubElement(root, "ModelExchange", common | {"completedIntegratorStepNotNeeded": "true"})
+    if CO_SIMULATION in made.kinds:
+        steps = {"canHandleVariableCommunicationStepSize": "true", "canInterpolateInputs": "true"}
+        SubElement(root, "CoSimulation", common | steps | {"maxOutputDerivativeOrder": "0"})
     add_units(root, _units(made))
     _categories(root)
     _experiment(root, made)
-    listed = [
-        (n, one) for n, one in enumerate(made.variables) if one.kind not in (VariableKind.TIME, VariableKind.SLOPE)
-    ]
+    left = (VariableKind.TIME, VariableKind.SLOPE, VariableKind.MARGIN)
+    listed = [(n, one) for n, one in enumerate(made.variables) if one.kind not in left]
+    index = {number: place for place, (number, _) in enumerate(listed, start=1)}
     variables = SubElement(root, "ModelVariables")
     for number, one in listed:
         scalar = SubElement(variables, "ScalarVariable", _common(one, number) | _role(one))
-        SubElement(scalar, "Integer" if one.kind is VariableKind.MODE else "Real", _number(one))
+        of = {"derivative": str(index[made.states[one.of].variable])} if one.kind is VariableKind.RATE else {}
+        again = {"reinit": "true"} if one.state >= 0 else {}
+        SubElement(scalar, "Integer" if one.kind is VariableKind.MODE else "Real", _number(one) | of | again)
     structure = SubElement(root, "ModelStructure")
-    for part in ("Outputs", "InitialUnknowns"):
-        if not made.of(VariableKind.SIGNAL, VariableKind.MODE):
-            break
-        unknowns = SubElement(structure, part)
-        for index, (_, one) in enumerate(listed, start=1):
-            if one.kind in (VariableKind.SIGNAL, VariableKind.MODE):
-                SubElement(unknowns, "Unknown", {"index": str(index)} | _dependencies(one, part == "Outputs"))
+    parts = {
+        "Outputs": [(number, _dependencies(one, True)) for number, one in _outputs(made)],
+        "Derivatives": [(state.rate, {}) for state in made.states],
+        "InitialUnknowns": [(number, {}) for number in _unknowns(made)],
+    }
+    for part, unknowns in parts.items():
+        if unknowns:
+            listing = SubElement(structure, part)
+            for number, depends in sorted(unknowns, key=lambda found: index[found[0]]):
+                SubElement(listing, "Unknown", {"index": str(index[number])} | depends)
 
 
 # ------------------------------------------------------------------------------------------------------------- FMI 3.0
 
+STATES_THREE = {"canGetAndSetFMUState": "true", "canSerializeFMUState": "true"}
+
 
 def _add_three(root: Element, made: Interface, identifier: str) -> None:
-    SubElement(
-        root,
-        "CoSimulation",
-        modelIdentifier=identifier,
-        canHandleVariableCommunicationStepSize="true",
-        mightReturnEarlyFromDoStep="true",
-        canGetAndSetFMUState="true",
-        canSerializeFMUState="true",
-        hasEventMode="true",
-    )
-    if made.options.method == "fixed" and made.options.step:
-        root[0].set("fixedInternalStepSize", repr(float(made.options.step)))
+    common = {"modelIdentifier": identifier} | STATES_THREE
+    if MODEL_EXCHANGE in made.kinds:
+        SubElement(root, "ModelExchange", common | {"needsCompletedIntegratorStep": "false"})
+    if CO_SIMULATION in made.kinds:
+        _add_steps(root, made, common)
     add_units(root, _units(made))
     _categories(root)
     _experiment(root, made)
     variables = SubElement(root, "ModelVariables")
     for number, one in enumerate(made.variables):
         of = {"derivative": str(one.of)} if one.kind is VariableKind.SLOPE else {}
+        if one.kind is VariableKind.RATE:
+            of = {"derivative": str(made.states[one.of].variable)}
+        again = {"reinit": "true"} if one.state >= 0 else {}
         kind = "Int32" if one.kind is VariableKind.MODE else "Float64"
-        SubElement(variables, kind, _common(one, number) | _role(one) | _number(one) | of)
+        SubElement(variables, kind, _common(one, number) | _role(one) | _number(one) | of | again)
     structure = SubElement(root, "ModelStructure")
-    for part in ("Output", "InitialUnknown"):
-        for number, one in made.of(VariableKind.SIGNAL, VariableKind.MODE):
-            SubElement(structure, part, {"valueReference": str(number)} | _dependencies(one, part == "Output"))
+    for number, one in _outputs(made):
+        SubElement(structure, "Output", {"valueReference": str(number)} | _dependencies(one, True))
+    parts = {
+        "ContinuousStateDerivative": [state.rate for state in made.states],
+        "InitialUnknown": _unknowns(made),
+        "EventIndicator": [number for number, _ in made.of(VariableKind.MARGIN)],
+    }
+    for part, references in parts.items():
+        for number in references:
+            SubElement(structure, part, {"valueReference": str(number)})
+
+
+def _add_steps(root: Element, made: Interface, common: dict[str, str]) -> None:
+    able = dict.fromkeys(("canHandleVariableCommunicationStepSize", "mightReturnEarlyFromDoStep", "hasEventMode"), "true")
+    fixed = made.options.method == "fixed" and made.options.step
+    size = {"fixedInternalStepSize": repr(float(made.options.step))} if fixed else {}
+    SubElement(root, "CoSimulation", common | able | size)

@@ -19,7 +19,7 @@ from clutchwork.declare.options import Options
 from clutchwork.driveline.driveline import Driveline
 from clutchwork.fmu import archive
 from clutchwork.fmu.description import description
-from clutchwork.fmu.interface import Interface, advice, interface
+from clutchwork.fmu.interface import KINDS, Interface, advice, interface
 from clutchwork.fmu.libraries import libraries
 from clutchwork.fmu.manual import manual
 from clutchwork.fmu.names import plain
@@ -42,19 +42,20 @@ def export_fmu(
     outputs: Sequence[str] | str | None = None,
     parameters: Sequence[str] | str | None = None,
     version: str = "2.0",
+    kinds: Sequence[str] | str | None = None,
     picture: bool = True,
     t_end: float | None = None,
     options: Options | None = None,
     **changes: Any,
 ) -> Path:
-    """Write a Driveline or a System as an FMU for co-simulation, which other simulators run; its path.
+    """Write a Driveline or a System as an FMU, which other simulators run; its path.
 
     Use it to take a plant model into Simulink, a vehicle simulation or a test bench: it holds the compiled core and
     needs neither Python nor a compiler. Contacts lock and break away inside of its steps as in `simulate`.
 
     Parameters: inputs, names of signals that the other simulator sets, such as "c1.pressure"; outputs, names of
     results, all by default; parameters, names of numbers that it may change, all that can be by default; version of
-    FMI, "2.0" or "3.0"; picture, whether the schematic goes with it, for which the extra `draw` is needed; t_end [s]
+    FMI, "2.0" or "3.0"; kinds, "co-simulation" and "model exchange", all that the driveline can be by default; picture, whether the schematic goes with it, for which the extra `draw` is needed; t_end [s]
     and options (rtol=, t_start= ...) as for `simulate`, by default those of the settings of the model. UseError
     names all that does not fit. Variables, units and how masters should set inputs: docs/guide/fmu.md.
 
@@ -68,7 +69,10 @@ def export_fmu(
     system = model.assemble() if isinstance(model, Driveline) else model
     end, chosen = merged(system.settings, _with_end(system, changes, t_end, options), options)
     wanted = [None if names is None else plain(names) for names in (outputs, parameters)]
-    made = interface(system, end, chosen, plain(inputs), *wanted)
+    asked = None if kinds is None else plain(kinds)
+    if asked is not None and (not asked or set(asked) - set(KINDS)):
+        raise UseError("cw.export_fmu", [f"kinds is {quote(kinds)}: give 'co-simulation', 'model exchange' or both"])
+    made = interface(system, end, chosen, plain(inputs), *wanted, asked, version)
     for one in advice(made, system):
         warn(one)
     return archive.write(where.with_suffix(".fmu"), _entries(made, where.stem, version, picture))

@@ -13,6 +13,7 @@ from clutchwork.base.classes import dataclass
 from clutchwork.base.errors import ModelError, ModelWarning, Problem, UseError
 from clutchwork.declare.layout import ROW
 from clutchwork.declare.options import Options
+from clutchwork.fmu.exchange import ContinuousState, exchange, exchange_faults
 from clutchwork.fmu.following import following
 from clutchwork.fmu.names import input_faults, is_text, matching, output_faults, parameter_faults, shown
 from clutchwork.fmu.parameters import parameters
@@ -33,6 +34,8 @@ OF_STATES = (
     "supply_energy",
     "meter_energy",
 )
+CO_SIMULATION, MODEL_EXCHANGE = "co-simulation", "model exchange"
+KINDS = (CO_SIMULATION, MODEL_EXCHANGE)
 FOLLOWS = "the output {} is computed from it too: choose outputs without that one"
 MODE = "mode of the contact: -1 slips backward, 0 locked, 1 slips forward, 2 open"
 
@@ -46,6 +49,9 @@ class Interface:
     t_end: float  # s
     variables: tuple[FmuVariable, ...]
     left_out: tuple[LeftOut, ...]
+    kinds: tuple[str, ...] = (CO_SIMULATION,)
+    states: tuple[ContinuousState, ...] = ()
+    not_exchanged: tuple[str, ...] = ()  # why it is not for model exchange
 
     def of(self, *kinds: VariableKind) -> list[tuple[int, FmuVariable]]:
         """Variables of some kinds with their value references."""
@@ -59,11 +65,14 @@ def interface(
     inputs: Sequence[str],
     outputs: Sequence[str] | None,
     chosen: Sequence[str] | None,
+    kinds: Sequence[str] | None = None,
+    version: str = "2.0",
 ) -> Interface:
     """The interface of an FMU; UseError names everything that does not fit.
 
     Parameters: t_end [s] and options of the run; inputs, names of signals; outputs, names of results, None: all;
-    chosen, names of parameters, None: all that can be some. In each a star stands for any letters.
+    chosen, names of parameters, None: all that can be some. In each a star stands for any letters. kinds, "co-simulation"
+    and "model exchange", None: all that the driveline can be; version of FMI.
     """
     pinned = _pinned(system)
     known, settable = channels(pinned, options.angles, options.work), signals(pinned)
@@ -92,13 +101,22 @@ def interface(
         *output_faults(wanted, known, taken),
         *parameter_faults(kept, numbers, left, settable),
     ]
-    if faults:
-        raise UseError("cw.export_fmu", faults)
     first = [FmuVariable("time", VariableKind.TIME, "s", options.t_start)]
     first += [_input(known, name, settable[name], start) for name, start in held.items()]
+    reasons = tuple(exchange_faults(ready, first, version))
+    if kinds is not None and MODEL_EXCHANGE in kinds:
+        faults += [f"kinds: not for model exchange: {why}" for why in reasons]
+    if faults:
+        raise UseError("cw.export_fmu", faults)
     slopes = [_slope(number, one) for number, one in enumerate(first) if one.kind is VariableKind.INPUT]
     last = [_output(pinned, known, name) for name in wanted]
-    return Interface(ready, options, t_end, (*first, *slopes, *(numbers[name] for name in kept), *last), left)
+    variables = (*first, *slopes, *(numbers[name] for name in kept), *last)
+    possible = (CO_SIMULATION,) if reasons else (MODEL_EXCHANGE, CO_SIMULATION)
+    taken_kinds = tuple(kind for kind in possible if kinds is None or kind in kinds)
+    if MODEL_EXCHANGE not in taken_kinds:
+        return Interface(ready, options, t_end, variables, left, taken_kinds, not_exchanged=reasons)
+    whole = exchange(ready, known, variables)
+    return Interface(ready, options, t_end, whole.variables, left, taken_kinds, whole.states)
 
 
 def _pinned(system: System) -> System:

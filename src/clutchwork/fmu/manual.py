@@ -30,7 +30,8 @@ def manual(made: Interface, version: str) -> bytes:
     parts = [html.heading(made.system.name)]
     parts += [html.paragraph(words.format(rates=RATES[version])) for words in HOW]
     for title, kinds in PARTS:
-        known = [one for _, one in made.of(*kinds) if version == "3.0" or one.kind is not VariableKind.SLOPE]
+        known = [one for _, one in made.of(*kinds) if not one.hidden]
+        known = [one for one in known if version == "3.0" or one.kind is not VariableKind.SLOPE]
         head = ("name", "unit", "start", "bounds", "kind", "meaning")
         parts += [html.heading(title), html.table(head, map(_line, known), most=len(known))]
     if made.left_out:

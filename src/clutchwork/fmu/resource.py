@@ -13,7 +13,7 @@ from clutchwork.base.classes import dataclass
 from clutchwork.declare.core import core
 from clutchwork.declare.layout import CAUSES, MODES, STATUS
 from clutchwork.declare.schema import Role
-from clutchwork.fmu.interface import Interface
+from clutchwork.fmu.interface import MODEL_EXCHANGE, Interface
 from clutchwork.fmu.variables import FmuVariable, Place, VariableKind
 from clutchwork.results.forms import Form
 from clutchwork.results.rows import numbers
@@ -21,7 +21,7 @@ from clutchwork.run.failure import JAMS, covered, jam_of
 from clutchwork.run.simulation import acting
 
 # the last digits are the version of this format
-MAGIC = b"CWFMU002"
+MAGIC = b"CWFMU003"
 T = TypeVar("T")
 
 
@@ -108,6 +108,8 @@ def _body(made: Interface) -> bytes:
     to.each(STATUS, lambda status: _texts(to, *status[1:]))
     to.each([CAUSES[k][0] if k in CAUSES else "start" for k in range(max(CAUSES) + 1)], to.text)
     to.each([MODES[k] for k in sorted(MODES)], to.text)
+    to.integer(int(MODEL_EXCHANGE in made.kinds))
+    to.each(made.states, lambda state: (to.integer(state.number), to.number(state.nominal)))
     return to.content()
 
 

@@ -21,6 +21,8 @@ class VariableKind(IntEnum):
     FIXED = 4
     SIGNAL = 5
     MODE = 6
+    RATE = 7
+    MARGIN = 8
 
 
 class Place(NamedTuple):
@@ -43,12 +45,15 @@ class FmuVariable:
     path: str = ""  # of a parameter in the driveline
     far: tuple[float, ...] = ()  # other values that a parameter may have
     reaches_forms: bool = False  # whether outputs may be computed from it
-    of: int = -1  # value reference of the input that a slope belongs to
+    of: int = -1  # value reference of the input of a slope; number of the state of a rate, or of an event indicator
     inputs: tuple[int, ...] = ()  # numbers in the core
     words: tuple[Place, ...] = ()  # of the bytes of the System
     params: tuple[Place, ...] = ()  # of the pool of parameters
     form: Form | None = field(default=None, repr=False)
     follows_states: bool = False  # an output that no input moves at once
+    state: int = -1  # number of the continuous state that it is
+    nominal: float = 0.0  # its size, of a continuous state
+    hidden: bool = False  # neither input nor output
 
 
 class LeftOut(NamedTuple):

@@ -29,8 +29,10 @@ void list_slip(Workspace<T>& ws, int k) {
     const bool driven = is_rigid(ws, c) || (ws.ratios.n > 0 && value(ws.ratios.own[b.direction]) == 0);
     const double level = ws.contact.forced[c] == 0 && !driven ? value(ws.sys.contact_tolerance[c]) : 0.0;
     const bool outside = abs(slip) >= level * (1 - 1e-9);
-    ws.guard.line[ws.guard.n_lines++] = {LineGuard::slip, k, ws.contact.mode[c],
-                                         outside ? level * ws.contact.mode[c] : 0.0};
+    LineGuard& line = ws.guard.line[ws.guard.n_lines++];
+    // it is watched as it was where the phase has begun
+    const bool known = ws.guard.is_placed && line.kind == LineGuard::slip && line.branch == k;
+    line = {LineGuard::slip, k, ws.contact.mode[c], known ? line.level : outside ? level * ws.contact.mode[c] : 0.0};
   }
 }
 
@@ -41,7 +43,7 @@ void list_turn(Workspace<T>& ws, int k) {
   if ((b.law >= 0 && !b.compliant) || !law_turns(b)) return;
   const double rate = value(rate_of(ws, b.direction));
   int& heading = ws.heading[b.direction];
-  if (abs(rate) > slip_tolerance(ws)) heading = rate > 0 ? forward : backward;
+  if (!ws.guard.is_placed && abs(rate) > slip_tolerance(ws)) heading = rate > 0 ? forward : backward;
   ws.guard.line[ws.guard.n_lines++] = {LineGuard::turn, k, heading, 0.0};
 }
 
