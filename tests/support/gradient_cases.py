@@ -86,7 +86,8 @@ def outputs(run: cw.Trajectory, rng: np.random.Generator) -> dict[str, Output]:
     """Speeds, heats, peaks, events that happen, and a squared jerk."""
     speeds = [name for name in run.names if name.endswith(".speed")]
     found: list[Any] = [str(name) for name in rng.permutation(speeds)[:2]]
-    found.append(cw.at(str(rng.choice(speeds)), float(rng.uniform(0.1, 0.9)) * run.t_end))
+    begin = run.options.t_start
+    found.append(cw.at(str(rng.choice(speeds)), begin + float(rng.uniform(0.1, 0.9)) * (run.t_end - begin)))
     stops = [contact.name for contact in run.system.contacts if is_stop(contact)]
     for contact in map(str, rng.permutation([contact.name for contact in run.system.contacts])[:2]):
         # the end of infinitely many bounces comes when they are small enough, one bounce earlier or later

@@ -8,38 +8,18 @@ planetary sets in gear, linings that heat up; outputs are those that look into s
 
 from __future__ import annotations
 
-import re
-from collections import Counter
 from collections.abc import Callable
-from dataclasses import dataclass, field, replace
 from typing import Any
 
 import numpy as np
 
 import clutchwork as cw
-from clutchwork.gradients.exact import Exact
-from clutchwork.gradients.finite_differences import weights
-from clutchwork.gradients.lines import lines
-from clutchwork.sweeps.outputs import Extreme, asked
+from clutchwork.sweeps.outputs import asked
 from support import by_differences, free_numbers
 from support.any_model.gradients import arguments
-from support.by_differences import TIGHT
+from support.compared_gradients import Tally, compared, summed, told
 
 Rng = np.random.Generator
-INSTANT = re.compile(r" at ([-+.e0-9]+) s\b")
-# runs with derivatives, and what a derivative may miss, of the scale of a value for a number that changes by all of it
-TOLERANCES: dict[str, Any] = {"rtol": 1e-10, "atol": 1e-12}
-ALLOWED = 1e-6
-# a squared jerk moves by jerks at bends, which are slopes of accelerations along the dense output of the steps: these
-# have an order less than it, and three quarters of the digits of the run
-ALLOWED_JERK = 3e-5
-# of a number: differences on each side of it, and how far both sides may be apart
-WIDTHS = (3e-4, 3e-5, 3e-6)
-SIDES = ((0, -1, -2, -3, -4), (0, 1, 2, 3, 4))
-# two ways through the same run differ by round-off, grown by what is stiff, and by the parts that each chooses
-BOTH_WAYS = 1e-7
-# what a derivative may miss behind an event that is noted: it has half of its digits
-ALLOWED_NOTED = 1e-3
 
 
 def friction(rng: Rng) -> cw.Law:
@@ -219,23 +199,6 @@ def outputs(run: cw.Trajectory, rng: Rng) -> dict[str, Any]:
     return dict(asked(found))
 
 
-@dataclass
-class Tally:
-    """What became of the pairs of values and numbers."""
-
-    compared: int = 0
-    doubtful: int = 0
-    rightly: int = 0
-    wrong: list[str] = field(default_factory=list)
-    # derivatives that differences know, and runs as a whole, that were refused
-    refused: list[str] = field(default_factory=list)
-    whole: list[str] = field(default_factory=list)
-    # what misses more than others, behind an event that a note is about
-    noted: list[str] = field(default_factory=list)
-    # forward, followed back, f(x) and sweep that do not agree
-    apart: list[str] = field(default_factory=list)
-
-
 def checked(seed: int, count: int) -> Tally:
     """Derivatives of a driveline by some of its numbers."""
     tally, rng = Tally(), np.random.default_rng([seed, 92])
@@ -245,115 +208,22 @@ def checked(seed: int, count: int) -> Tally:
         return tally
     wanted = outputs(run, rng)
     scales = by_differences.scales(run, wanted)
-    chosen = free_numbers.some(system, rng, count)
-    function = cw.differentiable(system, t_end, of=wanted, by=[one.name for one in chosen], **TOLERANCES)
-    both_ways(tally, function, scales, chosen)
-    try:
-        found = function.gradient()
-    except cw.NoGradient as none:
-        tally.whole += none.problems
-        return tally
-    tight = Exact(replace(function.task, options=function.task.options.changed(TIGHT)))
-    for number, one in enumerate(chosen):
-        _compare(tally, function, tight, found, number, scales, one)
+    compared(tally, system, t_end, wanted, scales, free_numbers.some(system, rng, count))
     return tally
-
-
-def both_ways(tally: Tally, function: Any, scales: np.ndarray, chosen: tuple[Any, ...]) -> None:
-    """A run that carries derivatives along, one that is followed back, f(x) and a sweep give the same."""
-    engine, x = function.engine, function.x0
-    sizes = np.array([max(abs(one.start), one.scale if one.places else 0.0) or 1.0 for one in chosen])
-    try:
-        runs, known = engine.runs, engine._asked
-        point = runs.point(x)
-        forward, back = runs.forward(point), runs.taped(point)
-    except cw.NoGradient:
-        return
-    args = (function.task.outputs, function.of, known, sizes)
-    one, other = lines(forward, *args), lines(back, *args)
-    values = function(x)
-    swept = cw.sweep(function.system, function.task.t_end, vary=[{}], outputs=dict(function.task.outputs), **TOLERANCES)
-    plain = {n for n, one in enumerate(function.task.outputs.values()) if not isinstance(one, Extreme)}
-    of_sweep = [float(np.ravel(swept[name])[0]) for name in function.task.outputs]
-    for place, (a, b, scale) in enumerate(zip(one, other, scales, strict=True)):
-        missed = np.abs(a.left - b.left) * sizes / scale
-        if np.nanmax(missed, initial=0.0) > BOTH_WAYS:
-            tally.apart.append(f"{a.name}: forward {a.left}, back {b.left}, {np.nanmax(missed):.1e} of scale")
-        # a sweep takes extremes from its rows, not from the polynomials through them
-        others = (("f(x)", values[place]), *((("sweep", of_sweep[place]),) if place in plain else ()))
-        for what, value in others:
-            if not abs(a.value - value) <= 1e-7 * scale and not (np.isnan(a.value) and np.isnan(value)):
-                tally.apart.append(f"{a.name}: gradient {a.value!r}, {what} {value!r}")
-
-
-def _compare(tally: Tally, function: Any, tight: Exact, found: Any, number: int, scales: np.ndarray, one: Any) -> None:
-    x0, size = function.x0, max(abs(one.start), one.scale if one.places else 0.0) or 1.0
-    best, slope = np.full(len(scales), np.inf), np.full(len(scales), np.nan)
-    for width in WIDTHS:
-        step = min(width * size, one.reach / 8)
-        left, right = (_slope(tight, x0, number, step, places) for places in SIDES)
-        apart = np.abs(left - right) * size / scales
-        better = apart < best
-        best, slope = np.where(better, apart, best), np.where(better, 0.5 * (left + right), slope)
-        if np.all(best < 0.01 * ALLOWED):
-            break
-    for place, name in enumerate(function.of):
-        exact = float(found.matrix[place, number])
-        if not best[place] < 0.1 * ALLOWED:
-            tally.doubtful += 1
-            tally.rightly += np.isnan(exact)
-            continue
-        tally.compared += 1
-        missed = abs(exact - slope[place]) * size / scales[place]
-        words = f"d {name} / d {one.name}: {exact:.8g} for {slope[place]:.8g}, {missed:.1e} of scale"
-        if np.isnan(exact):
-            told = next((text for text in found.problems if name in text), "; ".join(found.problems))
-            tally.refused.append(f"{words}: {told[:200]}")
-        elif not missed < (ALLOWED_JERK if name.startswith("squared_jerk") else ALLOWED):
-            noted = missed < ALLOWED_NOTED and concerned(found.notes, function, name)
-            (tally.noted if noted else tally.wrong).append(words)
-
-
-def concerned(notes: tuple[str, ...], function: Any, name: str) -> bool:
-    """Whether a note is about an instant up to that of an output, which nothing behind it moves."""
-    one = dict(zip(function.of, function.task.outputs.values(), strict=True)).get(name)
-    if hasattr(one, "times"):
-        end = max(map(float, one.times))
-    elif isinstance(one, str) or not hasattr(one, "contact"):
-        end = function.task.t_end
-    else:
-        end = float(function(function.x0)[list(function.of).index(name)])
-    instants = [float(found.group(1)) for text in notes if (found := INSTANT.search(text))]
-    return any(instant <= end * (1.0 + 1e-9) for instant in instants)
-
-
-def _slope(runs: Exact, x0: np.ndarray, number: int, step: float, places: tuple[int, ...]) -> np.ndarray:
-    points = np.tile(x0, (len(places), 1))
-    points[:, number] += step * np.array(places)
-    try:
-        return weights(places, len(places)) @ runs.values(points) / step
-    except cw.ModelError:
-        return np.full(len(runs.task.labels), np.nan)
 
 
 def main() -> None:
     """Run it."""
-    given = arguments(__doc__)
-    total: Counter[str] = Counter()
+    given, tallies = arguments(__doc__), list[Tally]()
     for seed in range(given.seed, given.seed + given.models):
         try:
-            tally = checked(seed, given.numbers)
+            tallies.append(checked(seed, given.numbers))
         except cw.ClutchworkError as error:
             print(f"seed {seed} ERROR {type(error).__name__}: {error}", flush=True)
             continue
-        total += Counter(models=1, compared=tally.compared, doubtful=tally.doubtful, rightly=tally.rightly)
-        total += Counter(wrong=len(tally.wrong), refused=len(tally.refused), apart=len(tally.apart))
-        total += Counter(whole=len(tally.whole), noted=len(tally.noted))
-        for what in ("wrong", "refused", "whole", "noted", "apart"):
-            for words in getattr(tally, what):
-                kind = list(KINDS)[seed % len(KINDS)]
-                print(f"seed {seed} {kind} {what.upper()} {words}", flush=True)
-    print(dict(total))
+        for what, words in told(tallies[-1]):
+            print(f"seed {seed} {list(KINDS)[seed % len(KINDS)]} {what.upper()} {words}", flush=True)
+    print(summed(iter(tallies)))
 
 
 if __name__ == "__main__":

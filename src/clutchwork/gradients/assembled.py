@@ -107,9 +107,9 @@ class Assembled:
         here, columns, problems, straight = there(x), list[Array](), list[str](), True
         for number in self.numbers:
             one = self.parameters[number]
-            size = max(abs(float(x[number])), one.scale if one.places else 0.0) or 1.0
+            own = abs(float(x[number]))
             try:
-                found = slope(partial(_along, there, x, number), here, size, one.reach)
+                found = slope(partial(_along, there, x, number), here, own, one.compared(own), one.reach)
             except Bent as bent:
                 problems.append(f"{one.name} = {x[number]:g} {one.unit}: {bent}")
                 continue

@@ -41,12 +41,24 @@ class Rebuilt(Exception):  # noqa: N818, it is caught where it is raised
     """A function is another one there."""
 
 
-def slope(function: Callable[[float], Array], here: Array, scale: float, reach: float) -> Difference:
+def slope(function: Callable[[float], Array], here: Array, own: float, scale: float, reach: float) -> Difference:
     """The derivative of a function at 0, by differences over steps of the scale of its argument.
 
     Parameters: function, raises ModelError where it is not defined, so that one side is asked alone, and Rebuilt where
-    it is another one; here, its value at 0; reach, how far it is the same. Bent where it has no derivative.
+    it is another one; here, its value at 0; own, the size of the number that its argument changes; scale, what that is
+    compared with, or 0: right beside zero steps of its own size leave round-off; reach, how far it is the same. Bent
+    where it has no derivative.
     """
+    size = max(own, scale) or 1.0
+    try:
+        return _slope(function, here, size, reach)
+    except Bent:
+        if own in {0.0, size}:
+            raise
+        return _slope(function, here, own, reach)
+
+
+def _slope(function: Callable[[float], Array], here: Array, scale: float, reach: float) -> Difference:
     width = min(WIDTH * scale, reach / 5)
     for number in range(MOST_TRIES):
         found = _tried(function, CENTRAL, here, width)

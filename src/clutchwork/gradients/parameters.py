@@ -44,6 +44,11 @@ class Tunable:
     upper: float = inf
     reach: float = inf  # how far it is from its neighbours in a table
 
+    def compared(self, value: float) -> float:
+        """What a change of it is compared with; 0 for one that has a size of its own: right beside zero none has."""
+        beside_others = bool(self.places) or self.reach < inf
+        return self.scale if beside_others or 0.0 in {self.start, value} else 0.0
+
 
 class Unfit(Exception):  # noqa: N818, it is caught where it is raised
     """Why a name means no number to differentiate by."""

@@ -101,14 +101,10 @@ class Runs:
 
     def sizes(self, x: Array) -> Array:
         """Sizes of the numbers at a point."""
-        scales, are_entries = self._scales
-        return np.maximum(np.abs(x), np.where(are_entries | (x == 0.0), scales, 0.0))
-
-    @cached_property
-    def _scales(self) -> tuple[Array, NDArray[np.bool_]]:
-        """Of each number its scale, and whether it is an entry of a table."""
-        own = self.task.parameters
-        return np.array([one.scale for one in own]), np.array([bool(one.places) for one in own])
+        own = np.abs(x)
+        compared = [one.compared(value) for one, value in zip(self.task.parameters, own.tolist(), strict=True)]
+        found: Array = np.maximum(own, compared)
+        return found
 
     # ------------------------------------------------------------------------------------------------- with derivatives
 

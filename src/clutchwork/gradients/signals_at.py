@@ -86,9 +86,9 @@ class SignalsAt:
         here = _evaluated(forms, rows)
         for number in self.within:
             one = self.words.parameters[number]
-            size = max(abs(float(x[number])), one.scale if one.places else 0.0) or 1.0
+            own, along = abs(float(x[number])), partial(self._along, x, number, tuple(made), rows)
             try:
-                found = slope(partial(self._along, x, number, tuple(made), rows), here, size, one.reach).value
+                found = slope(along, here, own, one.compared(own), one.reach).value
             except Bent as bent:
                 raise NoGradient([f"{one.name} = {x[number]:g} {one.unit}: {bent}"]) from None
             for name, line in zip(made, found.reshape(len(made), -1), strict=True):

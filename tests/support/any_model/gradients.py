@@ -1,114 +1,115 @@
-"""Derivatives of random models of everything against differences of runs at a tight tolerance.
+"""Derivatives of random models of everything: values and numbers of many kinds, compared with differences of runs.
 
-A difference counts where those of either side agree; a derivative that is none there and says nothing is wrong, and a
-refusal of one is without a cause.
-
-    PYTHONPATH=tests python -m support.any_model.gradients --models 300 --seed 0 --numbers 7
+PYTHONPATH=tests python -m support.any_model.gradients --models 300 --seed 0 --numbers 7
 """
 
 from __future__ import annotations
 
 import argparse
+import re
+import signal
 import warnings
-from collections import Counter, defaultdict
+from collections import Counter
 from collections.abc import Iterator
-from dataclasses import dataclass, field, replace
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 import clutchwork as cw
-from clutchwork.gradients.exact import Exact
-from clutchwork.gradients.finite_differences import weights
+from clutchwork.gradients.parameters import Tunable
+from clutchwork.sweeps.outputs import Output, asked
 from support import by_differences, free_numbers, gradient_cases
 from support.any_model import agree, judge, model
-from support.by_differences import TIGHT
+from support.compared_gradients import Tally, compared, summed, told
 
-Array = NDArray[np.float64]
-# of a number, or of its scale; the widest that both sides agree at counts
-WIDTHS = (3e-4, 3e-5, 3e-6)
-# of the scale of a value, for a number that changes by all of its own
-ALLOWED = 1e-6
-SIDES = {"left": (0, -1, -2, -3, -4), "right": (0, 1, 2, 3, 4)}
+# s that one model may take with all of its runs
+PATIENCE = 120
+# what signals end with that values are made of: their last value, their integral, their extremes
+ENDS = ("work", "heat", "angle", "position", "temperature", "energy", "elastic", "load", "wear", "twist")
+INTEGRALS = ("power", "speed", "acceleration")
+EXTREMES = ("torque", "force", "acceleration", "speed", "power", "slip", "deflection", "temperature", "capacity")
+# values that are smaller are zero but for round-off, in any unit
+ROUND_OFF = 1e-7
+ENTRY = re.compile(r"\[.*|^[^.]*\.")
 
 
-@dataclass
-class Tally:
-    """What became of the pairs of values and numbers."""
+class TooSlowError(Exception):
+    """A model takes too long."""
 
-    compared: int = 0
-    doubtful: int = 0
-    wrong: list[str] = field(default_factory=list)
-    # refused though both sides agree
-    refused: list[str] = field(default_factory=list)
-    # refused where they do not, or where differences say nothing
-    rightly: int = 0
+
+def examined(seed: int, count: int) -> Tally:
+    """What became of the derivatives of the model of a seed, by some of its numbers."""
+
+    def late(*_: Any) -> None:
+        raise TooSlowError
+
+    signal.signal(signal.SIGALRM, late)
+    signal.alarm(PATIENCE)
+    try:
+        return checked(model.model(seed), seed, count)
+    except (TooSlowError, KeyboardInterrupt, cw.Interrupted):
+        return Tally(whole=[f"more than {PATIENCE} s"])
+    except cw.ClutchworkError as error:
+        return Tally(wrong=[f"{type(error).__name__}: {str(error)[:300]}"])
+    finally:
+        signal.alarm(0)
 
 
 def checked(made: model.Plain, seed: int, count: int) -> Tally:
     """Derivatives of a model by some of its numbers."""
     tally, rng = Tally(), np.random.default_rng([seed, 76])
-    t_end = made["simulation"]["t_end"]
-    run = agree.run(made, rtol=1e-8, atol=1e-10, t_start=0.0)
+    run = agree.run(made, rtol=1e-8, atol=1e-10)
     if run.status != "done" or judge.explodes(run):
         return tally
-    wanted = gradient_cases.outputs(run, rng)
-    scales = by_differences.scales(run, wanted)
+    wanted = outputs(run, rng)
     system = model.driveline(made).assemble()
-    for one in free_numbers.some(system, rng, count):
-        for output, scale in zip(wanted.values(), scales, strict=True):
-            _pair(tally, system, t_end, one, output, float(scale))
+    scales = np.maximum(by_differences.scales(run, wanted), ROUND_OFF)
+    compared(tally, system, made["simulation"]["t_end"], wanted, scales, numbers(system, rng, count))
     return tally
 
 
-def _pair(tally: Tally, system: cw.System, t_end: float, one: Any, output: Any, scale: float) -> None:
-    """One derivative against its differences."""
-    refusal, exact = "", np.nan
-    function = cw.differentiable(system, t_end, of=output, by=one.name, rtol=1e-10, atol=1e-12, t_start=0.0)
-    try:
-        found = function.gradient()
-        exact, refusal = float(found.matrix[0, 0]), "; ".join(found.notes)
-    except cw.NoGradient as none:
-        refusal = "; ".join(none.problems)
-    size = max(abs(one.start), one.scale if one.places else 0.0) or 1.0
-    best, slope = np.inf, np.nan
-    tight = Exact(replace(function.task, options=function.task.options.changed(TIGHT)))
-    for width in WIDTHS:
-        step = min(width * size, one.reach / 8)
-        left, right = (_slope(tight, function.x0, step, places) for places in SIDES.values())
-        # of what a bound forbids, or an event that is not there, none is known
-        if abs(left - right) * size / scale < best:
-            best, slope = abs(left - right) * size / scale, 0.5 * (left + right)
-    # both sides apart: a kink, an event in between, or too steep for these widths
-    if not best < 0.1 * ALLOWED:
-        tally.doubtful += 1
-        tally.rightly += bool(refusal)
-        return
-    tally.compared += 1
-    missed = abs(slope - exact) * size / scale
-    words = f"d {function.of[0]} / d {one.name}: {exact:.8g} for {slope:.8g}, {missed:.1e} of scale"
-    if np.isnan(exact):
-        tally.refused.append(f"{words}: {refusal[:160]}")
-    elif not missed < ALLOWED and not refusal:
-        tally.wrong.append(words)
+def outputs(run: cw.Trajectory, rng: np.random.Generator) -> dict[str, Output]:
+    """Values of many kinds: those of random drivelines, ends of states and energies, an integral, two extremes."""
+    found: list[Any] = list(gradient_cases.outputs(run, rng).values())
+    found += _some(run, rng, ENDS, 3)
+    sums = [cw.integral(name) for name in _some(run, rng, INTEGRALS, 1)]
+    found += [one for one in sums if one.kept_as(run)]
+    found += [rng.choice([cw.maximum, cw.minimum])(name) for name in _some(run, rng, EXTREMES, 2)]
+    return asked(list(dict.fromkeys(found)))
 
 
-def _slope(runs: Exact, x0: Array, step: float, places: tuple[int, ...]) -> float:
-    points = x0[None] + step * np.array(places)[:, None]
-    try:
-        return float((weights(places, len(places)) @ runs.values(points))[0] / step)
-    except cw.ModelError:
-        return np.nan
+def _some(run: cw.Trajectory, rng: np.random.Generator, ends: tuple[str, ...], count: int) -> list[str]:
+    """Signals of different endings."""
+    known: dict[str, list[str]] = {end: [] for end in ends}
+    for name in run.names:
+        end = name.rpartition(".")[2].split("_")[0]
+        if end in known:
+            known[end].append(name)
+    kinds = [own for own in known.values() if own]
+    return [str(rng.choice(kinds[k])) for k in rng.permutation(len(kinds))[:count]]
+
+
+def numbers(system: cw.System, rng: np.random.Generator, count: int) -> tuple[Tunable, ...]:
+    """Numbers of different kinds first, so that points of tables do not crowd out others."""
+    known = free_numbers.free(system)
+    order, seen = [known[k] for k in rng.permutation(len(known))], Counter[str]()
+    ranks = dict[str, int]()
+    for one in order:
+        kind = ENTRY.sub("", one.name)
+        seen[kind] += 1
+        ranks[one.name] = seen[kind]
+    found = list[Tunable]()
+    for one in sorted(order, key=lambda one: ranks[one.name]):
+        # a number inside of another one goes with it
+        if not any(one.name.startswith(f"{k.name}.") or k.name.startswith(f"{one.name}.") for k in found):
+            found.append(one)
+    return tuple(found[:count])
 
 
 def campaign(first: int, models: int, count: int) -> Iterator[tuple[int, Tally]]:
     """The models of many seeds."""
     for seed in range(first, first + models):
-        try:
-            yield seed, checked(model.model(seed), seed, count)
-        except cw.ClutchworkError as error:
-            yield seed, Tally(wrong=[f"{type(error).__name__}: {str(error)[:200]}"])
+        yield seed, examined(seed, count)
 
 
 def arguments(about: str | None) -> argparse.Namespace:
@@ -123,24 +124,12 @@ def arguments(about: str | None) -> argparse.Namespace:
 
 def main() -> None:
     """Run it."""
-    given = arguments(__doc__)
-    total: Counter[str] = Counter()
-    reasons: dict[str, list[int]] = defaultdict(list)
+    given, tallies = arguments(__doc__), list[Tally]()
     for seed, tally in campaign(given.seed, given.models, given.numbers):
-        total += Counter(
-            compared=tally.compared,
-            doubtful=tally.doubtful,
-            wrong=len(tally.wrong),
-            refused=len(tally.refused),
-            rightly=tally.rightly,
-        )
-        for words in tally.wrong:
-            print(f"seed {seed} WRONG {words}", flush=True)
-        for words in tally.refused:
-            reasons[words.rpartition(": ")[2][:60]].append(seed)
-    print(dict(total))
-    for words, seeds in sorted(reasons.items(), key=lambda item: -len(item[1])):
-        print(f"{len(seeds):5d} refused, first seed {seeds[0]}: {words}")
+        tallies.append(tally)
+        for what, words in told(tally):
+            print(f"seed {seed} {what.upper()} {words}", flush=True)
+    print(summed(iter(tallies)))
 
 
 if __name__ == "__main__":
