@@ -112,6 +112,40 @@ def test_energies_close_with_two_motors(method: str) -> None:
     assert run["battery.energy"][-1] == pytest.approx(3600.0 * np.trapezoid(voltage, fine), rel=1e-6)
 
 
+def one_motor(copper_loss: float = 0.1) -> cw.Driveline:
+    d = cw.Driveline("one motor")
+    shaft = d.shaft("shaft", inertia=0.2, speed=50.0)
+    motor = cw.ElectricMotor(
+        "motor", shaft=shaft, max_torque=120.0, lag=0.05, no_load_loss=100.0, copper_loss=copper_loss,
+        command=cw.Table([(0.0, 0.0), (1.0, 60.0), (2.0, -60.0)]),
+    )  # fmt: skip
+    d.add(motor)
+    d.add(cw.Battery("battery", **TABLE, capacity=3600.0, load=cw.SupplyPower(motor)))  # type: ignore[arg-type]
+    return d
+
+
+def test_derivatives_and_steps_of_one_length() -> None:
+    """The charge by a loss against differences of runs; a row of the linear system against the current that it has."""
+    wanted, change = cw.at("battery.charge", 2.0), 1e-4
+    found = one_motor().simulate(2.0).gradient(wanted, "motor.copper_loss")
+    upper, lower = (
+        one_motor(0.1 + sign * change).simulate(2.0, rtol=1e-11)["battery.charge"][-1] for sign in (1.0, -1.0)
+    )
+    # a central difference of second order
+    assert float(np.squeeze(found.matrix)) == pytest.approx((upper - lower) / (2.0 * change), rel=1e-6)
+    system = cw.linearise(one_motor())
+    battery = next(part for part in one_motor().elements if part.name == "battery")
+    voltage, resistance = battery.voltage(0.5), battery.resistance(0.5)
+    current = battery.answer(0.5, 100.0).current
+    row, column = (list(system.states).index(name) for name in ("battery.energy", "motor.request"))
+    # power by torque is the speed, current by power 1/(U - 2 R I)
+    assert system.A[row, column] == pytest.approx(voltage * 50.0 / (voltage - 2.0 * resistance * current), rel=1e-9)
+    run = one_motor().simulate(2.0, method="fixed", step=1e-3)
+    given = run["battery.energy"] - run["battery.loss"] + run["battery.unserved"]
+    # the power of a step is its work; losses are those of its middle
+    assert given == pytest.approx(run["motor.electric_energy"], abs=1e-6 * np.abs(given).max())
+
+
 def test_mistakes() -> None:
     d = cw.Driveline("wrong")
     shaft = d.shaft("shaft", inertia=1.0)

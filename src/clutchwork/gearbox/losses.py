@@ -43,7 +43,7 @@ class Oil:
         low, high = (_double_log(nu) for nu in (self.viscosity_40, self.viscosity_100))
         first, last = log10(ZERO + 40.0), log10(ZERO + 100.0)
         slope = (high - low) / (last - first)
-        return 1e-6 * (10.0 ** (10.0 ** (low + slope * (log10(temperature) - first))) - WALTHER)
+        return float(1e-6 * (10.0 ** (10.0 ** (low + slope * (log10(temperature) - first))) - WALTHER))
 
 
 def _double_log(viscosity: float) -> float:
@@ -121,7 +121,7 @@ class Churning:
 
     def torque(self, speed: float, ratio: float) -> float:
         """Resisting torque [N m]; ratio, of the viscosity to that at 40 degC."""
-        return self.torque_at * (speed / self.speed) ** 2 * ratio**self.exponent
+        return float(self.torque_at * (speed / self.speed) ** 2 * ratio**self.exponent)
 
 
 @dataclass(frozen=True)
