@@ -22,6 +22,7 @@ from clutchwork.shifts.schedule import ShiftSchedule
 from clutchwork.shifts.settings import ShiftSettings
 from clutchwork.shifts.shift_map import Inhibit, ShiftMap
 from clutchwork.shifts.survey import Survey, Surveyed, neighbours, survey
+from clutchwork.shifts.torque_sources import TorqueSource
 
 __all__ = [
     "ElementActuator",
@@ -45,6 +46,7 @@ __all__ = [
     "ShiftSettings",
     "Survey",
     "Surveyed",
+    "TorqueSource",
     "diagnose",
     "drive",
     "exchanges",
