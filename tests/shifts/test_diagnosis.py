@@ -19,7 +19,7 @@ def findings(found: cw.Trajectory) -> tuple[cw.shifts.Finding, ...]:
 def test_a_smooth_shift_has_none_of_them() -> None:
     opened = BEGIN + RAMP
     # as much as the gear before carried, and less than would unload the first clutch beyond zero
-    made = run(*ramp("C2", BEGIN, opened, 0.7 * C / PER_PASCAL), (opened, {"C1": 0.0}), (1.6, {"C2": 1e6}))
+    made = run(*ramp("C2", BEGIN, opened, 0.88 * C / PER_PASCAL), (opened, {"C1": 0.0}), (1.6, {"C2": 1e6}))
     causes = " ".join(one.cause for one in findings(made))
     assert "ran" not in causes
     assert "tie-up" not in causes

@@ -23,6 +23,7 @@ from clutchwork.shifts.schedule import ShiftSchedule
 from clutchwork.shifts.settings import ShiftSettings
 from clutchwork.shifts.shift_map import Inhibit, ShiftMap
 from clutchwork.shifts.survey import Survey, Surveyed, neighbours, survey
+from clutchwork.shifts.torque_sources import TorqueSource
 
 __all__ = [
     "DualClutch",
@@ -49,6 +50,7 @@ __all__ = [
     "ShiftSettings",
     "Survey",
     "Surveyed",
+    "TorqueSource",
     "diagnose",
     "drive",
     "drive_dual_clutch",

@@ -136,6 +136,12 @@ class ShiftController:
         """Factor of the torque of the engine that it asks for."""
         return 1.0 if self._course is None else self._course.torque_factor
 
+    def torque_change(self, now: Measured) -> float:
+        """Torque that it asks for at the input on top of what the driver asks for [N m], below zero a reduction."""
+        course = self._course
+        loaded = course.loaded if isinstance(course, ParallelSequence) else now.input_torque
+        return (self.torque_factor - 1.0) * loaded
+
     @property
     def blip(self) -> float:
         """Throttle that it asks for on top of that of the driver, 0 to 1."""

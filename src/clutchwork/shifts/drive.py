@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from typing import TYPE_CHECKING
 
 from clutchwork.base.classes import dataclass
 from clutchwork.shifts.controller import ShiftController
 from clutchwork.shifts.record import Measured
+from clutchwork.shifts.torque_sources import TorqueSource, shared
 
 if TYPE_CHECKING:
     from clutchwork.run.trajectory import Trajectory
@@ -82,6 +83,7 @@ def drive(
     sensed: Sensed,
     throttle: Callable[[float], float],
     also: Also | None = None,
+    sources: Sequence[TorqueSource] = (),
     period: float = 0.01,
     resting: float = 0.05,
 ) -> Trajectory:
@@ -90,7 +92,8 @@ def drive(
     Use it for shifts on a schedule or by request: `control.records` has them afterwards. It can be called again to go
     on.
 
-    Parameters: throttle, of the driver over time, 0 to 1; also, what else is set, such as brakes; period, from one call
+    Parameters: throttle, of the driver over time, 0 to 1; also, what else is set, such as brakes; sources, motors that
+    give what a shift asks for before the engine does, the first one first; period, from one call
     of the controller to the next while it shifts [s]; resting, the same between shifts.
     """
     read = _SensorReader(sensed, sim, control)
@@ -98,9 +101,12 @@ def drive(
     while sim.time < until - 1e-9:
         time, pedal = sim.time, float(throttle(sim.time))
         wanted = {} if set_ else control.commands
-        wanted |= control.step(time, read(pedal))
+        now = read(pedal)
+        wanted |= control.step(time, now)
+        torques, left = shared(control, now, sources, pedal)
+        wanted |= torques
         if sensed.throttle:
-            wanted[sensed.throttle] = min(1.0, pedal * control.torque_factor + control.blip)
+            wanted[sensed.throttle] = left
         if also is not None:
             wanted |= also(time, sim)
         changed = {name: value for name, value in wanted.items() if set_.get(name) != value}

@@ -33,6 +33,8 @@ LAST = 3.0
 JOLT = 0.25
 # for which the torque phase may wait without a reason [s]
 USUAL = 0.015
+# share of the inertia phase in which the torque of the engine comes back
+COMES_BACK = 0.4
 # torque of an element that counts as none, as a share of that of the input
 NOTHING = 1e-3
 
@@ -53,6 +55,7 @@ class ParallelSequence:
     rates: Mapping[str, float] = field(default_factory=dict)  # rad/s2, of slips, where one did
     state: str = "fill"
     torque_factor: float = 1.0  # what the engine is asked for
+    loaded: float = 0.0  # N m, at the input where the inertia phase began
     blip: float = 0.0  # none: no dog clutch waits for the engine
     late: float = 0.0  # s, for which those that close were waited for in the torque phase
     jolt: float = 0.0  # rad/s, largest second difference of the speed of the output while they were filled
@@ -168,7 +171,9 @@ class ParallelSequence:
             do.commands[name] = share * do.commands[name] + (1.0 - share) * self._held[name]
         change = -float(one.input @ self._start)
         if now.input_torque > 0.0 and change < 0.0:
-            self.torque_factor = 1.0 - with_.reduction
+            # the engine needs its time to come back before speeds meet
+            left = 1.0 - min(1.0, self._passed / self._time)
+            self.torque_factor = 1.0 - with_.reduction * min(1.0, left / COMES_BACK)
         else:
             self.torque_factor = 1.0 + with_.increase if now.input_torque <= 0.0 and change > 0.0 else 1.0
         return ""
@@ -278,7 +283,7 @@ class ParallelSequence:
     def _begin(self, now: Measured) -> None:
         """The inertia phase from here."""
         one, with_ = self.one, self.with_
-        self._start = self._y(now)
+        self._start, self.loaded = self._y(now), now.input_torque
         self._speed = np.array([self.rates.get(name, 0.0) for name in one.on])
         self._integral, self._passed = np.zeros(len(one.on)), 0.0
         self._output = Trend(now.output_speed)
