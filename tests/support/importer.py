@@ -135,7 +135,7 @@ def simulated(
         at = min(hit, walk.t)
         x = state(at) if hit < np.inf else walk.y
         if at >= end and hit == np.inf:
-            fill(end, lambda t: x, whole=True)
+            fill(end, lambda _, last=x: last, whole=True)  # type: ignore[misc]
         place(at, x)
         run.raw.enterEventMode()
         take(inputs(np.nextafter(at, np.inf)) if at in knots else {})

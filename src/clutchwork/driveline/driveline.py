@@ -284,7 +284,7 @@ class Driveline:
 
     @explained("d.to_fmu", path="'car.fmu'")
     def to_fmu(self, path: str | Path, **given: Any) -> Path:
-        """Write an FMU for co-simulation, which other simulators run; its path.
+        """Write an FMU, which other simulators run; its path.
 
         Parameters: given, as for `cw.export_fmu`: inputs, outputs, parameters, version, picture, t_end and options.
         """

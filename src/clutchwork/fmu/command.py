@@ -43,6 +43,7 @@ def add_command(subparsers: Any) -> None:
     fmu.add_argument("--inputs", **LIST, help="signals that the other simulator sets; default: none")
     fmu.add_argument("--outputs", **LIST, help="results that it reads, such as *.speed; default: all")
     fmu.add_argument("--parameters", **LIST, help="numbers that it may change; default: all that can be")
+    fmu.add_argument("--kinds", **LIST, help="co-simulation, model exchange; default: all that the model can be")
     fmu.add_argument("--no-picture", action="store_true", help="leave out the schematic")
     shell.add_json(fmu)
     add_options(fmu, OF_FMU, {"t_end": "that of the model, else 1 s after the start"})
@@ -70,6 +71,7 @@ def fmu_command(asked: argparse.Namespace) -> int:
             outputs=_names(asked.outputs),
             parameters=_names(asked.parameters),
             version=asked.version,
+            kinds=_names(asked.kinds),
             picture=not asked.no_picture,
             **given_options(asked),
         )

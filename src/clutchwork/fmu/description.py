@@ -201,7 +201,9 @@ def _add_three(root: Element, made: Interface, identifier: str) -> None:
 
 
 def _add_steps(root: Element, made: Interface, common: dict[str, str]) -> None:
-    able = dict.fromkeys(("canHandleVariableCommunicationStepSize", "mightReturnEarlyFromDoStep", "hasEventMode"), "true")
+    able = dict.fromkeys(
+        ("canHandleVariableCommunicationStepSize", "mightReturnEarlyFromDoStep", "hasEventMode"), "true"
+    )
     fixed = made.options.method == "fixed" and made.options.step
     size = {"fixedInternalStepSize": repr(float(made.options.step))} if fixed else {}
     SubElement(root, "CoSimulation", common | able | size)

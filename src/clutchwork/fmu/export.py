@@ -1,4 +1,4 @@
-"""Export a driveline as an FMU for co-simulation."""
+"""Export a driveline as an FMU."""
 
 from __future__ import annotations
 
@@ -55,9 +55,10 @@ def export_fmu(
 
     Parameters: inputs, names of signals that the other simulator sets, such as "c1.pressure"; outputs, names of
     results, all by default; parameters, names of numbers that it may change, all that can be by default; version of
-    FMI, "2.0" or "3.0"; kinds, "co-simulation" and "model exchange", all that the driveline can be by default; picture, whether the schematic goes with it, for which the extra `draw` is needed; t_end [s]
-    and options (rtol=, t_start= ...) as for `simulate`, by default those of the settings of the model. UseError
-    names all that does not fit. Variables, units and how masters should set inputs: docs/guide/fmu.md.
+    FMI, "2.0" or "3.0"; kinds, "co-simulation", "model exchange" or both, all that the driveline can be by default;
+    picture, whether the schematic goes with it, for which the extra `draw` is needed; t_end [s] and options (rtol=,
+    t_start= ...) as for `simulate`, by default those of the settings of the model. UseError names all that does not
+    fit. Variables, units and how masters should set inputs: docs/guide/fmu.md.
 
     Source: Functional Mock-up Interface 2.0.5 and 3.0.2, https://fmi-standard.org.
     """

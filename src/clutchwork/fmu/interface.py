@@ -71,8 +71,8 @@ def interface(
     """The interface of an FMU; UseError names everything that does not fit.
 
     Parameters: t_end [s] and options of the run; inputs, names of signals; outputs, names of results, None: all;
-    chosen, names of parameters, None: all that can be some. In each a star stands for any letters. kinds, "co-simulation"
-    and "model exchange", None: all that the driveline can be; version of FMI.
+    chosen, names of parameters, None: all that can be some. In each a star stands for any letters. kinds of KINDS,
+    None: all that the driveline can be; version of FMI.
     """
     pinned = _pinned(system)
     known, settable = channels(pinned, options.angles, options.work), signals(pinned)

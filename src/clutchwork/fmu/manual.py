@@ -34,6 +34,9 @@ def manual(made: Interface, version: str) -> bytes:
         known = [one for one in known if version == "3.0" or one.kind is not VariableKind.SLOPE]
         head = ("name", "unit", "start", "bounds", "kind", "meaning")
         parts += [html.heading(title), html.table(head, map(_line, known), most=len(known))]
+    if made.not_exchanged:
+        parts += [html.heading("Why it is not for model exchange")]
+        parts += [html.paragraph(why) for why in made.not_exchanged]
     if made.left_out:
         parts += [
             html.heading("Numbers that are not parameters"),
