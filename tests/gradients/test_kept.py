@@ -77,3 +77,16 @@ def test_a_piston_that_is_told_to_fall_below_rest_first(rtol: float) -> None:
     for one in by_differences.compared(function, function.jacobian(function.x0), scales):
         # right behind rest a derivative is large beside a pressure of nearly zero: four digits fewer count later
         assert np.all(one.missed < max(1e-6, 1e4 * rtol)), str(one)
+
+
+def test_a_speed_without_inertia_bends_at_a_knot_at_the_end() -> None:
+    # a hard one: it follows a torque that bends there, which one side of the knot alone sees
+    d = cw.Driveline("end")
+    a, m, b = d.shaft("a", inertia=0.3, speed=5.0), d.shaft("m"), d.shaft("b", inertia=0.8)
+    d.add(cw.Damper("k1", base=a, follower=m, damping=3.0))
+    d.add(cw.Damper("k2", base=m, follower=b, damping=1.0))
+    d.add(cw.Torque("t", shaft=m, torque=cw.Table([(0.0, 1.0), (0.1, 5.0), (0.3, -7.0)])))
+    with pytest.raises(cw.NoGradient, match=r"m\.speed is asked for at a knot that moves"):
+        d.simulate(0.3, **TIGHT).gradient(of="m.speed", by="t.torque.times[3]")
+    found = d.simulate(0.3, **TIGHT).gradient(of=["a.speed", "m.speed"], by="t.torque.values[2]")
+    assert found.problems == ()
