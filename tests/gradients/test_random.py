@@ -9,6 +9,7 @@ import pytest
 import clutchwork as cw
 from support import gradient_cases, samples
 from support.amount import amount
+from support.any_model import gradients
 
 ELEMENTS = samples.declared(*samples.ELEMENT_ROLES)
 # guards that are the least of several, stops that are struck together, a speed that is round-off
@@ -35,6 +36,18 @@ def test_random_drivelines(kind):
     assert not wrong, "\n".join(wrong)
     # one of two may have an event that no derivative passes
     assert compared > 2 * len(seeds)
+
+
+@pytest.mark.random
+def test_models_of_everything():
+    """What the campaign of `support.any_model.gradients` draws, thinned out."""
+    compared, found = 0, list[str]()
+    for seed in range(61000, 61000 + amount(8)):
+        tally = gradients.examined(seed, 2)
+        compared += tally.compared
+        found += [f"seed {seed}: {words}" for words in tally.wrong + tally.apart]
+    assert not found, "\n".join(found)
+    assert compared > 0
 
 
 @pytest.mark.parametrize("cls", ELEMENTS, ids=lambda cls: cls.kind)

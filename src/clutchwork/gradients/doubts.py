@@ -103,9 +103,17 @@ class Doubts:
 
     def _asked_at_knots(self) -> Iterator[Doubt]:
         for number, line in enumerate(self.lines):
-            if line.at is not None and self.run.primal.bends_at(line.columns, np.array([line.at]))[0]:
+            if line.at is not None and (self._ends_at_knot(line.at) or self._bends(line)):
                 why = f"{line.name} is asked for at a knot that moves, {line.at:.9g} s; ask before or behind it"
                 yield Doubt(why, self._only(number), self._moving_knots())
+
+    def _bends(self, line: Line) -> bool:
+        return bool(self.run.primal.bends_at(line.columns, np.array([line.at]))[0])
+
+    def _ends_at_knot(self, time: float) -> bool:
+        """Whether the run ends at an instant, and a knot that moves is there: nobody sees whether it bends."""
+        is_end = time >= self.run.primal.t_end * (1.0 - SAME)
+        return is_end and bool(np.any(np.abs(self.point.knots.meets - time) <= SAME * (1.0 + abs(time))))
 
     def _kinks(self) -> Iterator[Doubt]:
         for number, line in enumerate(self.lines):

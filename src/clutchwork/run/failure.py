@@ -71,6 +71,8 @@ def explain(status: int, component: Any, time: float, value: float, quantity: st
     Parameters: quantity, a number of the row or a signal in place of a component; jam, which of `JAMS`.
     """
     name, message, remedy = STATUS[status]
+    # of a run with derivatives it is not known when
+    stopped = f"stopped at {time:.9g} s" if isfinite(time) else "stopped"
     if name == "refused":
         where = f"{component.name!r}" if component is not None else "this model"
         return f'method is "fixed": {message} of {where}, for {REFUSALS[int(value)][1]}: {remedy}'
@@ -78,14 +80,14 @@ def explain(status: int, component: Any, time: float, value: float, quantity: st
         message, remedy = JAMS[jam][0], JAMS[jam][1] or remedy
     if name == "zeno" and quantity:
         crowded = f"{quantity!r} has more than 50 knots within a microsecond"
-        return f"stopped at {time:.9g} s: {crowded}: thin out the signal, or filter it before it becomes a table"
+        return f"{stopped}: {crowded}: thin out the signal, or filter it before it becomes a table"
     if quantity:
         told = f"; the largest is {quantity}, {value:g}" if isfinite(value) else f": {quantity} is {value:g}"
-        return f"stopped at {time:.9g} s: {message}{told}: {remedy}"
+        return f"{stopped}: {message}{told}: {remedy}"
     where = f" at {component.name!r}" if component is not None else ""
     ranges = covered(component) if name == "out_of_table" else ""
     seen = f" (value {value:g}{ranges})" if component is not None and name in WITH_VALUE else ""
-    return f"stopped at {time:.9g} s: {message}{where}{seen}: {remedy}"
+    return f"{stopped}: {message}{where}{seen}: {remedy}"
 
 
 def jam_of(system: System, component: Any, index: int) -> str:

@@ -46,7 +46,9 @@ def examined(seed: int, count: int) -> Tally:
     signal.signal(signal.SIGALRM, late)
     signal.alarm(PATIENCE)
     try:
-        return checked(model.model(seed), seed, count)
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore")
+            return checked(model.model(seed), seed, count)
     except (TooSlowError, KeyboardInterrupt, cw.Interrupted):
         return Tally(whole=[f"more than {PATIENCE} s"])
     except cw.ClutchworkError as error:

@@ -16,10 +16,14 @@ struct StribeckCurve {
   T viscous;                     ///< [s/rad]
 };
 
-/// |x|^n, finite with its derivative at zero.
+/// |x|^n, finite with its derivative at zero. An exponent of 1 that moves has a derivative, too.
 template <class T, class S>
 CLUTCHWORK_INLINE S power_of_size(S x, T n) {
-  return choose(value(n) == 1, [&] { return abs(x); }, [&] { return pow(larger(abs(x), S(1e-12)), S(n)); });
+  constexpr double least = 1e-12;
+  if constexpr (has_tangents<T>) {
+    if (value(n) == 1 && !is_constant(n)) return abs(x) * (S(1) + S(n - T(1)) * log(larger(abs(x), S(least))));
+  }
+  return choose(value(n) == 1, [&] { return abs(x); }, [&] { return pow(larger(abs(x), S(least)), S(n)); });
 }
 
 /// exp(-x), zero where nothing of it is left: underflow is slow.

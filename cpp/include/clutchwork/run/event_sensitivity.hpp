@@ -168,11 +168,11 @@ T knot_shift(Workspace<T>& ws) {
 }
 
 /// Time derivative of the guard that was hit: its own, else by differences along the motion, close enough that no other
-/// is less.
+/// is less and that it does not bend. docs/theory/gradients.md (3)
 template <class G, class Form, class T = typename Form::Scalar>
 double guard_rate(Form& form, Step<Form>& step, const Hit& hit, const T* velocity) {
-  constexpr double closest = 1e-5;
-  double rate = 0;
+  constexpr double closest = 1e-5, straight = 1e-5;
+  double rate = 0, least = infinity;
   if constexpr (requires { G::rate(form, hit, velocity, rate); }) {
     if (G::rate(form, hit, velocity, rate)) return rate;
   }
@@ -188,8 +188,11 @@ double guard_rate(Form& form, Step<Form>& step, const Hit& hit, const T* velocit
       own = own && who == hit.who;
       return found;
     };
-    rate = (8 * (plain(1) - plain(-1)) - (plain(2) - plain(-2))) / (12 * reach);
-    if (own) break;
+    // what is smooth has nearly the same slope over twice the reach
+    const double near = (plain(1) - plain(-1)) / (2 * reach), far = (plain(2) - plain(-2)) / (4 * reach);
+    const double apart = own ? abs(near - far) : larger(abs(near - far), 1e300);
+    if (apart < least || share == 1) rate = (4 * near - far) / 3, least = apart;
+    if (own && apart <= straight * larger(abs(near), abs(far))) break;
   }
   return rate;
 }

@@ -46,6 +46,7 @@ class Variation {
   double at_ = -1, other_at_ = -1;
   bool is_whole_ = false;                      ///< the image has the factor of the whole step
   bool known_ = false;                         ///< the slopes at the start of the next part
+  double reached_[T::seen] = {};               ///< sizes of the directions up to the end of the part that is tried
   bool rows_move_ = true, mass_moves_ = true;  ///< with the numbers of the model
 
  public:
@@ -155,6 +156,14 @@ class Variation {
     return until;
   }
 
+  /// Parts that are no longer count whatever they miss: a law that bends without an event, as one that is clipped,
+  /// bends derivatives within one of them, and moves them by no more than it takes. docs/theory/gradients.md (21)
+  double shortest() const {
+    // of what time can tell apart, a part that missed too much is at least a tenth as long
+    constexpr double share = 1e-3, apart = 4e-13;
+    return larger(share * ws_.options.rtol * step.h, apart * larger(1e-2, abs(step.t)));
+  }
+
   /// As follow, with the derivatives as an X.
   template <class X>
   double follow_as(double from, double until, double end) {
@@ -169,10 +178,13 @@ class Variation {
       linearize_at(to, end);
       from_ = from, to_ = to, share_ = h / step.h;
       const double error = vary<X>(h);
-      const double growth = 0.9 * pow(larger(error, 1e-10), -0.2);
-      if (error <= 1) {
+      const bool kink = error > 1 && error < 1e300 && h <= shortest();
+      const double growth = kink ? 6 : 0.9 * pow(larger(error, 1e-10), -0.2);
+      if (error <= 1 || kink) {
         // one that was cut says nothing of longer ones
         ws_.moved.pace = last ? larger(pace, h * smaller(6.0, growth)) : h * smaller(6.0, growth);
+        // a part that counts for nothing may end anywhere
+        for (int j = 0; j < As<X>::count; ++j) ws_.moved.size[j] = reached_[j];
         for (int i = 0; i < form.n(); ++i) row<X>(SlopeRow::first)[i] = row<X>(SlopeRow::last)[i];
         known_ = !has_ties();
         set_values();
@@ -456,7 +468,8 @@ class Variation {
   double error_of(const X* missed, const X* end) {
     constexpr int seen = As<X>::count;
     double sum[seen] = {}, worst = 0;
-    double* size = ws_.moved.size;
+    double* size = reached_;
+    for (int j = 0; j < seen; ++j) size[j] = ws_.moved.size[j];
     each_component(end, [&](const auto& x, double of) {
       for (int j = 0; j < seen; ++j) size[j] = larger(size[j], abs(As<X>::at(x, j)) / of);
     });
