@@ -242,7 +242,7 @@ def test_it_slips_before_a_ratio_at_which_it_holds_nothing(capacity):
 
 
 def test_it_slips_where_the_torque_has_a_zero_beside_the_pole():
-    """A brake on the other shaft carries push x ratio/(ratio - 1): the same sign at both ends of a step over 0 and 1."""
+    """A brake on the other shaft carries push x ratio/(ratio - 1): one sign at both ends of a step over 0 and 1."""
     push, capacity = 30.0, 200.0
     d = cw.Driveline("carrier")
     a, b = d.shaft("a", inertia=1.0), d.shaft("b", inertia=1.0)
