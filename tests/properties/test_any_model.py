@@ -92,6 +92,7 @@ OPEN = {
     "the limit of five loads that depend on each other, of which four are tried in all ways": 3002924,
     "a motor whose torque jumps as it leaves rest, in the row there": 3004861,
     "a dip of a limit load within a step, where a redundant contact has a pole": 5007866,
+    "a set that passes the pole of a ratio within a step": 3005640,
 }
 
 
@@ -165,7 +166,6 @@ MENDED: dict[str, list[int]] = {
     "a shaft that a locked contact stopped beside a dead point": [5002251],
     "teeth that were drawn apart under load": [5005499, 5007981],
     "a coefficient that rose to self-locking": [5010757],
-    "a set that passed the pole of a ratio": [3005640],
     "a slip that was found off its interpolant": [5014935],
     "events behind the first decision": [5004956, 5007610],
     "loads that are differences of large torques": [5001922, 5011110, 700509, 6000178],

@@ -29,23 +29,6 @@ template <class Form>
   hit.take(s, k);
 }
 
-/// Where a set leaves its limit on the way to a pole of the torque of one of its independent contacts.
-/// docs/theory/varying-ratios.md (22)
-template <class Form>
-void find_pole_of_set(Form& form, Step<Form>& step, int k, Hit& hit) {
-  auto& ws = form.ws;
-  for (int i = 0; i < ws.held.set_rank[k]; ++i) {
-    const int a = ws.held.set_place[ws.held.set_first[k] + i];
-    if (!has_pole(ws, a)) continue;
-    fit(form, step);
-    auto f = [&](double s) {
-      torques_at(form, step, s);
-      return value(set_room(ws, k, ws.observed.carried, ws.step_start.noise[0], ws.loads.now));
-    };
-    hit.take(before_pole(ws, a, f, value(ws.step_start.room[k]), hit.s), k);
-  }
-}
-
 /// A dependent set of locked contacts at its limit load.
 struct SetLimit : OwnScale {
   static constexpr const char* name = "set";
@@ -64,7 +47,6 @@ struct SetLimit : OwnScale {
       const double coming = room_ahead(ws, k, ws.step_start, step.h), gone = room_ahead(ws, k, ws.step_end, -step.h);
       const double change = larger(abs(after - before), larger(before - coming, after - gone));
       bool bends = false;
-      if (ws.ratios.n > 0) find_pole_of_set(form, step, k, hit);
       if (ws.sys.loads > 0 && holds_loads(ws)) {
         find_loaded_limit(form, step, k, smaller(smaller(before, after), smaller(coming, gone)), hit);
         continue;

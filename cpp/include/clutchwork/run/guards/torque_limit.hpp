@@ -69,10 +69,10 @@ bool is_before_pole(const Workspace<T>& ws, bool same_sign) {
 }
 
 /// Where what is held with such a torque leaves its limit, on the way to the pole, by its margin f; -1: not before
-/// `limit`.
+/// `limit`. Where a tie turns over nothing is left of the digits of a margin next to the pole.
 template <class T, class F>
 [[gnu::noinline]] double before_pole(const Workspace<T>& ws, int a, F&& f, double margin_at_start, double limit) {
-  constexpr int halvings = 40;
+  const int halvings = ws.ratios.reversed >= 0 ? 24 : 40;
   const double sign = value(ws.step_start.multiplier[a]);
   double low = 0, above = larger(margin_at_start, 0.0), high = 1;
   for (int k = 0; k < halvings; ++k) {
