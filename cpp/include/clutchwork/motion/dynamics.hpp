@@ -237,7 +237,7 @@ CLUTCHWORK_HOT void sense(Form& form, const T* y, const T* velocity, const T* d,
       if (ws.loads.of[c] >= 0) {
         edge.swing[a] = load_swing(ws, c, edge.multiplier[a]);
         // round-off of its load, twice what a decision concedes
-        edge.noise[a] *= T(4) * (T(1) + load_share(ws, c));
+        if (ws.held.in_set[a] == 0) edge.noise[a] *= T(4) * (T(1) + load_share(ws, c));
       }
     }
   }
