@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from math import pi
+from typing import Any
 
 import numpy as np
 
@@ -16,7 +17,7 @@ def test_an_interpolant_does_not_wind_a_friction_spring() -> None:
     """Friction whose limit follows a speed ends its slide within a tolerance of that speed, again and again."""
     d = cw.Driveline("damper")
     light, heavy = d.shaft("light", inertia=0.272, speed=90.9), d.shaft("heavy", inertia=1.0)
-    friction = {"friction_limit": (24.44, 49.11), "friction_stiffness": (2350.0, 1175.0)}
+    friction: dict[str, Any] = {"friction_limit": (24.44, 49.11), "friction_stiffness": (2350.0, 1175.0)}
     springs = cw.TorsionalDamper(
         "springs",
         base=light,
@@ -39,7 +40,7 @@ def test_a_reversal_winds_a_friction_spring_back() -> None:
     shaft, cam, mass = d.shaft("shaft", inertia=1.0, speed=7.22), d.shaft("cam", inertia=1.0), d.mass("mass", mass=1.0)
     lift = ((0.0, 0.0), (0.5 * pi, 0.00557), (1.5 * pi, 0.00612), (2.0 * pi, 0.0))
     d.add(cw.Cam("lifts", shaft=cam, mass=mass, lift=lift))
-    friction = {"friction_limit": (10.8, 16.2), "friction_stiffness": (1020.0, 510.0)}
+    friction: dict[str, Any] = {"friction_limit": (10.8, 16.2), "friction_stiffness": (1020.0, 510.0)}
     springs = cw.TorsionalDamper("springs", base=d.housing, follower=shaft, torque=((0.6, 205.6),), **friction)
     d.add(springs)
     run = simulate(d, 0.13, rtol=9.54e-5)
@@ -64,14 +65,14 @@ def test_a_cam_drives_a_screw_without_load() -> None:
 
 
 def test_what_gives_way_moves_the_way_it_gives_way() -> None:
-    """Rolling resistance and a screw beside one another: two loads of the screw fit its slip, one of them the motion."""
+    """Rolling resistance and a screw beside one another: two loads fit the slip of the screw, one its motion."""
     d = cw.Driveline("nut")
     screw, support, mass = d.shaft("screw"), d.shaft("support", inertia=1.0), d.mass("mass", mass=373.0)
     d.add(cw.Torque("drive", shaft=support, torque=1.0))
     d.add(cw.Vehicle("road", mass=mass, drag_area=1.0, wind=1.0))
     law = cw.Tanh(kinetic=0.0878, speed=0.0422)
     d.add(cw.SpragClutch("sprag", base=d.housing, follower=screw, friction=law, holding=1.0, drag=10.0))
-    sizes = {"lead": 0.004, "radius": 0.07, "friction_coefficient": 0.2}
+    sizes: dict[str, Any] = {"lead": 0.004, "radius": 0.07, "friction_coefficient": 0.2}
     d.add(cw.Leadscrew("nut", screw=screw, mass=mass, support=support, **sizes))
     run = simulate(d, 0.0858)
     assert run.status == "done"
@@ -104,10 +105,26 @@ def test_what_is_driven_does_not_stop_within_its_tolerance() -> None:
     d = cw.Driveline("tolerance")
     driven, shaft = d.shaft("driven", inertia=1.0, speed=-5.0), d.shaft("shaft", inertia=0.22)
     law = cw.Coulomb(static=0.1, kinetic=0.1)
-    sizes = {"radius": 1.0, "half_angle": 1.0, "force": 100.0, "tolerance": 1.0}
+    sizes: dict[str, Any] = {"radius": 1.0, "half_angle": 1.0, "force": 100.0, "tolerance": 1.0}
     d.add(cw.ConeClutch("disc", base=d.housing, follower=shaft, friction=law, **sizes))
     d.add(cw.Backlash("play", base=shaft, follower=driven, gap=1.0))
     d.add(cw.PrescribedAcceleration("motion", shaft=driven, acceleration=20.0))
     run = simulate(d, 0.3)
     assert run.status == "done"
     assert len(run.events.of("disc")) < 6
+
+
+def test_a_torque_that_fades_at_once_lets_nothing_go() -> None:
+    """A bristle drives a screw without inertia that locks itself: slips of 1e-17 rad/s do not count."""
+    d = cw.Driveline("bristle")
+    drum, screw, mass = d.shaft("drum", inertia=0.00429, speed=15.6), d.shaft("screw"), d.mass("mass", mass=472.0)
+    d.add(cw.Leadscrew("nut", screw=screw, mass=mass, lead=0.01, radius=1.0, friction_coefficient=1.0))
+    law = cw.Dahl(kinetic=0.025, stiffness=850.0)
+    disc: dict[str, Any] = {"radius": 1.0, "half_angle": 1.0, "force": 90.0}
+    d.add(cw.ConeClutch("disc", base=drum, follower=screw, friction=law, **disc))
+    d.add(cw.LinearTorque("drag", shaft=screw, nominal_torque=-40.0, nominal_speed=1.0))
+    run = simulate(d, 0.2)
+    assert run.status == "done"
+    # friction and drag only take energy
+    energy = 0.5 * (0.00429 * run["drum.speed"] ** 2 + 472.0 * run["mass.speed"] ** 2)
+    assert np.all(energy < energy[0] * (1 + 1e-9))

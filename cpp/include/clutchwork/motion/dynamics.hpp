@@ -236,8 +236,9 @@ CLUTCHWORK_HOT void sense(Form& form, const T* y, const T* velocity, const T* d,
       const int c = ws.held.contact[a];
       if (ws.loads.of[c] >= 0) {
         edge.swing[a] = load_swing(ws, c, edge.multiplier[a]);
-        // round-off of its load, twice what a decision concedes
-        edge.noise[a] *= T(4) * (T(1) + load_share(ws, c));
+        // round-off of its load, twice what a decision concedes, for one that holds less than that
+        const T more = edge.noise[a] * T(4) * (T(1) + load_share(ws, c));
+        if (ws.held.in_set[a] == 0 && value(edge.capacity[a]) < value(more)) edge.noise[a] = more;
       }
     }
   }
