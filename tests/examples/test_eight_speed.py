@@ -62,7 +62,7 @@ def test_what_its_shifts_were_like_by_formulas_of_their_own(driven: tuple[Any, A
         assert one.peak_jerk <= np.max(jerk) * 1.5
     holes = {f"{one.shift.before}-{one.shift.after}": one.torque_hole for one in found}
     # what a driver feels at the half shafts as the clutch that closes takes hold and the shafts ring
-    assert all(holes[name] > 200.0 for name in ("1-2", "2-3", "3-4", "4-5"))
+    assert all(150.0 < holes[name] < 300.0 for name in ("1-2", "2-3", "3-4", "4-5"))
 
 
 def test_what_faults_do(tmp_path: Path) -> None:
@@ -70,7 +70,7 @@ def test_what_faults_do(tmp_path: Path) -> None:
     table = example().faults(("5",))
     verdicts = {(one.fault.element, one.fault.fault): one.verdict for one in table}
     assert verdicts == {
-        ("A", "stuck closed"): "decelerates",
+        ("A", "stuck closed"): "locks the output",
         ("B", "missing"): "drive lost",
         ("C", "missing"): "drive lost",
         ("D", "missing"): "drive lost",

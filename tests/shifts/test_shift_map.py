@@ -112,7 +112,7 @@ def test_maps_from_files(tmp_path: Path) -> None:
     for pair in lines:
         assert made.speed(pair, 0.3) == pytest.approx(ShiftMap(RATIOS, lines).speed(pair, 0.3))
     path.write_text("1-2, 0.0, fast\n")
-    with pytest.raises(cw.UseError, match=r"map.csv, line 1: '1-2,0.0,fast' is no row such as 1-2, 0.3, 25"):
+    with pytest.raises(cw.UseError, match=r"map.csv, line 1: '1-2,0.0,fast' must be a row such as 1-2, 0.3, 25"):
         ShiftMap.from_csv(path, BOX)
     with pytest.raises(cw.UseError, match="unit is 'knots'; choose from rad/s, rpm"):
         ShiftMap.from_csv(path, BOX, unit="knots")

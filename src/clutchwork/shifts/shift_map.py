@@ -171,7 +171,7 @@ def _rows(path: Path) -> list[tuple[Pair, float, float]]:
                 first, second = cells[0].split("-")
                 made.append(((first.strip(), second.strip()), float(cells[1]), float(cells[2])))
             except (ValueError, IndexError):
-                wrong.append(f"{path.name}, line {number}: {quote(','.join(cells))} is no row such as 1-2, 0.3, 25")
+                wrong.append(f"{path.name}, line {number}: {quote(','.join(cells))} must be a row such as 1-2, 0.3, 25")
     if wrong or not made:
         raise UseError("ShiftMap.from_csv", wrong or [f"{path.name} has no rows; write lines such as 1-2, 0.3, 25"])
     return made
