@@ -69,13 +69,11 @@ def diagram(
         raise UseError(
             "cw.diagram", [f"{box.name} has planetary sets, and axes shows gear pairs: choose stick or lever"]
         )
-    if kind in ("speeds", "chart") and not box.states():
-        raise UseError("cw.diagram", [f"{box.name} has no gears, and {kind} shows gears: choose stick or lever"])
     if kind in LEVERS and not any(map(_has_lever, box.sets)):
         raise UseError(
             "cw.diagram", [f"{box.name} has no lever: its sets are locked in themselves; choose stick or chart"]
         )
-    if kind == "chart" and now is None and point is None and not box.states():
+    if kind == "chart" and now is None and not box.states():
         remedy = "give closed elements as gear, or choose speeds"
         raise UseError("cw.diagram", [f"{box.name} has no gears to chart; {remedy}"])
     made = Diagram(kind, title, _marks(box, kind, now or point, merged))
@@ -118,12 +116,11 @@ def _marks(box: Gearbox, kind: str, now: GearState | OperatingPoint | None, merg
         return parallel.painted(box, axes(box), now)
     if kind == "stick":
         return stick.painted(drawn, stick_layout(drawn), now)
-    states = list(box.states().values())
-    # closed elements that are no row of the table are shown beside its gears
-    states += [now] if now is not None and all(now.closed != one.closed for one in states) else []
     if kind in LEVERS:
         box, drawn = (replace(one, sets=tuple(filter(_has_lever, one.sets))) for one in (box, drawn))
     if kind == "lever":
         return lever.painted(drawn, lever_layout(drawn, merged=merged), now)
-    gear = None if isinstance(now, OperatingPoint) else now
+    gear, states = None if isinstance(now, OperatingPoint) else now, list(box.states().values())
+    # closed elements that are no row of the table are shown beside its gears
+    states += [gear] if gear is not None and all(gear.closed != one.closed for one in states) else []
     return plan.painted(box, states, gear) if kind == "speeds" else chart.painted(box, states, gear)
