@@ -21,8 +21,6 @@ from clutchwork.signals.bases.waveform import value
 from fmu.conftest import INPUTS, SIX_SPEED
 from reference.msl.model import translate
 from reference.test_msl import FOLDER, load, names
-from support.any_model import agree, model
-from support.any_model.model import driveline as drawn
 from support.fmus import DISCARD, ERROR, Fmu
 from support.importer import exchanged, simulated
 from support.project import ROOT
@@ -120,24 +118,6 @@ def test_cases_of_modelica(tmp_path: Path, name: str, solver: Callable[..., Any]
         path = exported(driveline, tmp_path, run, version)
     found = solver(path, tmp_path / "unpacked", run, rtol)
     assert max(found.values()) < STEEP.get(name, 1e-6), found
-
-
-# drawn with flexible shafts, laws with pieces, kinks, faults, shared states, sets, friction that follows loads; 123 has
-# speeds without inertia
-@pytest.mark.parametrize("seed", [43, 62, 69, 74, 88, 123])
-def test_drawn_models(tmp_path: Path, seed: int) -> None:
-    made = model.model(seed)
-    run = agree.run(made, times=agree.grid(made), rtol=1e-10, atol=1e-12)
-    with warnings.catch_warnings():
-        warnings.simplefilter("ignore")
-        path = exported(drawn(made), tmp_path, run, "3.0")
-    fmu = Fmu(path, tmp_path / "unpacked")
-    speeds = [name for name in outputs_of(fmu) if name.endswith(".speed")]
-    with exchanged(fmu, tolerance=1e-8) as instance:
-        rows, _ = simulated(instance, run.time, speeds, rtol=1e-8)
-    found = misses(rows, run, speeds)
-    # Radau over many restarts
-    assert max(found.values()) < 1e-5, found
 
 
 @cache
