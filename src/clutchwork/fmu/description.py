@@ -153,7 +153,7 @@ def _add_two(root: Element, made: Interface, identifier: str) -> None:
         again = {"reinit": "true"} if one.state >= 0 else {}
         SubElement(scalar, "Integer" if one.kind is VariableKind.MODE else "Real", _number(one) | of | again)
     structure = SubElement(root, "ModelStructure")
-    parts = {
+    parts: dict[str, list[tuple[int, dict[str, str]]]] = {
         "Outputs": [(number, _dependencies(one, True)) for number, one in _outputs(made)],
         "Derivatives": [(state.rate, {}) for state in made.states],
         "InitialUnknowns": [(number, {}) for number in _unknowns(made)],

@@ -121,10 +121,11 @@ def _named(name: str) -> Iterator[str]:
 def _margins(system: System) -> Iterator[str]:
     """Names of the event indicators in the order of the core."""
     found = wiring(system)
-    for part in (*found.elements, *found.contacts, *system.processes, *system.flows):
-        yield f"{part.name}.margin"
+    branches = [branch.name for branch in (*found.elements, *found.contacts)]
+    for name in (*branches, *(part.name for part in (*system.processes, *system.flows))):
+        yield f"{name}.margin"
 
 
 def _fastest(system: System) -> float:
     """Size of the speeds where a run begins."""
-    return max([1.0, *abs(system.initial_speed).tolist()])
+    return max(1.0, *(abs(float(speed)) for speed in system.initial_speed))

@@ -69,11 +69,10 @@ def export_fmu(
         raise UseError("cw.export_fmu", [f"version is {quote(version)}: give '2.0' or '3.0'"])
     system = model.assemble() if isinstance(model, Driveline) else model
     end, chosen = merged(system.settings, _with_end(system, changes, t_end, options), options)
-    wanted = [None if names is None else plain(names) for names in (outputs, parameters)]
-    asked = None if kinds is None else plain(kinds)
+    wanted, numbers, asked = (None if names is None else plain(names) for names in (outputs, parameters, kinds))
     if asked is not None and (not asked or set(asked) - set(KINDS)):
         raise UseError("cw.export_fmu", [f"kinds is {quote(kinds)}: give 'co-simulation', 'model exchange' or both"])
-    made = interface(system, end, chosen, plain(inputs), *wanted, asked, version)
+    made = interface(system, end, chosen, plain(inputs), wanted, numbers, asked, version)
     for one in advice(made, system):
         warn(one)
     return archive.write(where.with_suffix(".fmu"), _entries(made, where.stem, version, picture))

@@ -109,8 +109,13 @@ def _body(made: Interface) -> bytes:
     to.each([CAUSES[k][0] if k in CAUSES else "start" for k in range(max(CAUSES) + 1)], to.text)
     to.each([MODES[k] for k in sorted(MODES)], to.text)
     to.integer(int(MODEL_EXCHANGE in made.kinds))
-    to.each(made.states, lambda state: (to.integer(state.number), to.number(state.nominal)))
+    to.each(made.states, lambda state: _state(to, state.number, state.nominal))
     return to.content()
+
+
+def _state(to: ResourceWriter, number: int, nominal: float) -> None:
+    to.integer(number)
+    to.number(nominal)
 
 
 def _option(to: ResourceWriter, name: str, value: float) -> None:
