@@ -25,7 +25,10 @@ SOURCES = [ROOT / "cpp" / "src" / f"{name}.cpp" for name in NAMES]
 # what a step spends its time in is inlined by force, as in the native build
 HOT = {"phases_small", "phases_sparse"}
 # what a page has no use for: groups of runs, linearisation, what FMUs ask for
-LEFT_OUT = re.compile(r"cw_(advance_group|group_size|local|local_size|advance_to_event|next_knot|copy|paste)")
+LEFT_OUT = re.compile(
+    r"cw_(advance_group|group_size|local|local_size|advance_to_event|next_knot|copy|paste"
+    r"|states|rates|margins|decide|place|place_size|place_input)"
+)
 FLAGS = [
     "-std=c++20",
     "-g0",

@@ -23,7 +23,7 @@ CONTACTS = {
     "between prescribed speeds alone within a microsecond": "return 1e6 * tolerance",
     r"one that more than $2 \cdot 10^{-12}$ of all torques makes": "return larger(round_off, 2e-12 * ws.decision.pull",
     "at most $4 n + 5$ rounds": "round <= 4 * ws.sys.contacts + 4",
-    "while time does not advance, to $10^{-9}$ s": "forced_time <= 1e-9",
+    "while time does not advance, to $10^{-9}$ s": "ws.time - instant <= 1e-9",
     r"0 \le \alpha \le 2": "ample = 2",
     "at most $20 n + 50$": "raise(*this, 50 + 20 * set.n)",
     "A price below $10^{-9}$ of the largest": "> 1e-9 * most",
@@ -32,6 +32,7 @@ CONTACTS = {
     r"|\sigma_c| \le 10^{-10} \left( 1 + \max |v| \right)": "return 1e-10 * (1 + largest)",
 }
 EVENTS = {
+    "that starts within $10^{-9}$ of its end": "fresh = 1e-9",
     r"Coefficients above $-10^{-9} \max_j |\beta_j|$": "larger(1e-9 * scale, noise)",
     r"$10^{-10} (1 + \max |v|)$ beyond zero": "return 1e-10 * (1 + largest)",
     r"most $1.5/\omega$ long": "resolves_work(ws) ? 0.5 : 1.5) / fastest",

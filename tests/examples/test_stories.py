@@ -130,8 +130,8 @@ def test_the_page_about_notebooks_runs_as_one() -> None:
 
 def test_pages_of_stories_are_in_the_guide_in_their_order() -> None:
     index = (ROOT / "docs" / "index.md").read_text(encoding="utf-8").partition("## All pages")[2]
-    order = ["start", "build", "thermal-launch", "wet-clutch", "shift-controller", "learn", "sweeps", "fit", "export"]
-    places = [index.index(f"](guide/{name}.md)\n") for name in [*order, "notebook", "first-minutes"]]
+    order = ["start", "build", "notebook", "first-minutes", "shift-controller", "fit", "thermal-launch", "wet-clutch"]
+    places = [index.index(f"](guide/{name}.md)\n") for name in [*order, "sweeps", "learn", "export"]]
     assert places == sorted(places)
 
 

@@ -43,7 +43,7 @@ def ours(function: Any) -> bool:
 # what calls return, and what declarations are made of: nobody calls these
 MADE_HERE = {
     cw.Calibration, cw.Design, cw.Differentiable, cw.Domain, cw.Element, cw.EnergyBalance, cw.Event, cw.Events,
-    cw.Gradient, cw.Hint, cw.Hints, cw.Law, cw.Linear, cw.Loss, cw.Losses, cw.Moment, cw.Problem, cw.Signal,
+    cw.Gradient, cw.Hint, cw.Hints, cw.Law, cw.Linear, cw.Loss, cw.Losses, cw.Moment, cw.Moments, cw.Problem, cw.Signal,
     cw.SobolIndices, cw.State, cw.Study, cw.Sweep, cw.System, cw.Trajectory,
 }  # fmt: skip
 

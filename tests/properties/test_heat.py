@@ -19,6 +19,8 @@ def test_heat_over_a_run_is_that_of_the_balance(seed: int) -> None:
         warnings.simplefilter("ignore")
         driveline = cw.Driveline.from_dict(model.model(seed))
         run = driveline.simulate(0.3)
+    if not len(run):
+        return
     balance = run.energy.heat
     losing = [one.name for one in driveline.elements if one.work is Work.LOSS and f"{one.name}.heat" in run.names]
     for name in losing:

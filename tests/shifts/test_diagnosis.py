@@ -5,8 +5,8 @@ from __future__ import annotations
 import pytest
 
 import clutchwork as cw
-from shifts.test_two_clutches import BEGIN, BOX, PER_PASCAL, RAMP, SHAFT, C, ramp, run
 from support.shift_car import SENSED, car, hydraulic, survey
+from support.two_clutches import BEGIN, BOX, PER_PASCAL, RAMP, SHAFT, C, ramp, run
 
 EIGHT = cw.Gearbox.load("zf-8hp70")
 

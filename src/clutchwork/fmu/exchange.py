@@ -31,14 +31,14 @@ class ContinuousState(NamedTuple):
     rate: int
 
 
-class Exchange(NamedTuple):
+class ExchangeTerms(NamedTuple):
     """Variables with those of model exchange, and the continuous states."""
 
     variables: tuple[FmuVariable, ...]
     states: tuple[ContinuousState, ...]
 
 
-def exchange(system: System, known: Channels, variables: Sequence[FmuVariable]) -> Exchange:
+def exchange(system: System, known: Channels, variables: Sequence[FmuVariable]) -> ExchangeTerms:
     """Give an FMU its continuous states, their rates, and event indicators, behind the variables that it has."""
     made = list(variables)
     read = set[int]().union(*(one.form.reads() for one in made if one.form is not None))
@@ -57,7 +57,7 @@ def exchange(system: System, known: Channels, variables: Sequence[FmuVariable]) 
         free = next(one for one in _named(name) if one not in taken)
         taken.add(free)
         made.append(FmuVariable(free, VariableKind.MARGIN, "1", about=ABOUT_MARGIN, of=margin, hidden=True))
-    return Exchange(tuple(made), tuple(states))
+    return ExchangeTerms(tuple(made), tuple(states))
 
 
 def exchange_faults(system: System, inputs: Sequence[FmuVariable], version: str) -> Iterator[str]:
@@ -67,7 +67,7 @@ def exchange_faults(system: System, inputs: Sequence[FmuVariable], version: str)
         yield f"'{found.elements[number].name}' has a ratio that varies, whose ties a solver does not keep"
     for contact, place in zip(found.contacts, system.contact_place.tolist(), strict=True):
         if place >= 0:
-            yield f"'{contact.name}' has impacts, after which a solver cannot tell whether it bounces or rests"
+            yield f"'{contact.name}' has impacts, after which it is open for a solver whether it bounces or rests"
     if speeds:
         for number in system.load_contact.tolist():
             yield f"the friction of '{found.contacts[number].name}' follows torques, beside a speed that is prescribed"

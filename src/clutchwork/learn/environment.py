@@ -106,6 +106,7 @@ def vector_environment(
     # needs Gymnasium
     from gymnasium.vector import AutoresetMode
 
+    # needs it too
     from clutchwork.learn.vector import DrivelineVectorEnv
 
     sims = Simulators(task.system, count, start=start, threads=threads, **changes)

@@ -194,6 +194,23 @@ int turned_back(Workspace<T>& ws, const BoundedProblem<T>& p) {
   return -1;
 }
 
+/// Bounds of the torque of a contact that follows no load.
+template <class T>
+T least_torque(const Workspace<T>& ws, int c) {
+  return free_way(ws, c) < 0 ? T(-infinity) : -usable_capacity(ws, c, forward);
+}
+template <class T>
+T most_torque(const Workspace<T>& ws, int c) {
+  return free_way(ws, c) > 0 ? freewheel_limit(ws, c) : usable_capacity(ws, c, backward);
+}
+
+/// Whether a contact is let go and has not moved yet.
+template <class T>
+bool starts_to_slide(const Workspace<T>& ws, int c, int way) {
+  return way != 0 && ws.contact.forced[c] == way &&
+         abs(value(rate_of(ws, int(ws.sys.elements) + c))) <= slip_tolerance(ws);
+}
+
 /// As pose_problem where contacts follow loads: those that slip take part too, behind the candidates.
 template <class T>
 CoupledProblem<T> pose_coupled(Workspace<T>& ws, BoundedProblem<T>& p) {
@@ -220,8 +237,7 @@ CoupledProblem<T> pose_coupled(Workspace<T>& ws, BoundedProblem<T>& p) {
     // what slips goes on with its line where that fits
     q.line[a] = follows(c) ? ws.loads.line[ws.loads.of[c]] : 0;
     q.sliding[a] = ws.decision.candidate[c] ? 0 : ws.contact.mode[c];
-    q.starts[a] = follows(c) && q.sliding[a] != 0 && ws.contact.forced[c] == q.sliding[a] &&
-                  abs(value(rate_of(ws, int(sys.elements) + c))) <= slip_tolerance(ws);
+    q.starts[a] = follows(c) && starts_to_slide(ws, c, q.sliding[a]);
     for (int l = 0; l < sys.loads; ++l) q.reach[l * n + a] = ws.loads.by_torque[l * ws.n_directions + sys.elements + c];
     q.lower[a] = q.upper[a] = T(0);
     if (follows(c)) {
@@ -234,9 +250,7 @@ CoupledProblem<T> pose_coupled(Workspace<T>& ws, BoundedProblem<T>& p) {
       // what moves nothing and is driven by nobody has no torque
       if (rigid && q.sliding[a] == 0) q.load[a] = -1;
     } else if (!rigid) {
-      const int way = free_way(ws, c);
-      q.lower[a] = way < 0 ? T(-infinity) : -usable_capacity(ws, c, forward);
-      q.upper[a] = way > 0 ? freewheel_limit(ws, c) : usable_capacity(ws, c, backward);
+      q.lower[a] = least_torque(ws, c), q.upper[a] = most_torque(ws, c);
     }
   }
   return q;

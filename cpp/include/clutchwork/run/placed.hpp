@@ -126,26 +126,36 @@ bool inputs_decide(const Workspace<T>& ws) {
   return false;
 }
 
-/// Margins where the motion was looked at: above zero while nothing needs a decision, below where something does.
-template <class T>
-void placed_margins(Workspace<T>& ws, double* z) {
-  const int ne = int(ws.sys.elements), nd = ws.n_directions;
-  const auto& edge = ws.step_start;
-  const T *rates = placed_state_rates(ws), still[most_ways] = {};
-  const double zero = slip_tolerance(ws), size = zero * 1e10, torques = larger(torque_size(ws), 1e-6);
-  for (std::int64_t i = 0; i < count_margins(ws); ++i) z[i] = 1;
-  auto take = [&](int d, double margin) { z[d] = smaller(z[d], margin + placed_slack); };
+/// Takes the least margin of each direction, and of each process behind them.
+struct LeastMargins {
+  double* z;
 
+  void operator()(int d, double margin) const { z[d] = smaller(z[d], margin + placed_slack); }
+};
+
+/// Rates on their sides of levels.
+template <class T>
+void line_margins(const Workspace<T>& ws, const LeastMargins& take) {
+  const double size = slip_tolerance(ws) * 1e10;
   for (int i = 0; i < ws.guard.n_lines; ++i) {
     const LineGuard& g = ws.guard.line[i];
     // an open contact that turns decides nothing
     if (g.kind == LineGuard::pass) continue;
     // one that has just begun to slip is known no better than its solver knows it, and neither is a kink
     const int d = ws.branch[g.branch].direction;
-    const bool is_slip = g.kind == LineGuard::slip, is_fresh = is_slip && ws.contact.forced[d - ne] != 0;
+    const bool is_slip = g.kind == LineGuard::slip;
+    const bool is_fresh = is_slip && ws.contact.forced[d - int(ws.sys.elements)] != 0;
     const double missed = !is_slip ? 0.1 * ws.options.rtol : is_fresh ? ws.options.rtol : 0.0;
-    take(d, g.sign * (edge.rate[g.branch] - g.level) / (size + abs(g.level)) + missed);
+    take(d, g.sign * (ws.step_start.rate[g.branch] - g.level) / (size + abs(g.level)) + missed);
   }
+}
+
+/// What is locked within its limits.
+template <class T>
+void held_margins(const Workspace<T>& ws, const LeastMargins& take) {
+  const int ne = int(ws.sys.elements);
+  const auto& edge = ws.step_start;
+  const double torques = larger(torque_size(ws), 1e-6);
   for (int a = 0; a < ws.held.n; ++a) {
     const int c = ws.held.contact[a];
     if (is_rigid(ws, c)) {
@@ -165,6 +175,12 @@ void placed_margins(Workspace<T>& ws, double* z) {
     const int l = ws.loads.sliding[i];
     take(ne + int(ws.sys.load_contact[l]), edge.clearance[l] / torques);
   }
+}
+
+/// Loads on their sides of zero, sound contacts, plays between their ends.
+template <class T>
+void contact_margins(const Workspace<T>& ws, const LeastMargins& take) {
+  const int ne = int(ws.sys.elements);
   for (int c = 0; c < ws.sys.contacts; ++c) {
     take(ne + c, load_margin(ws, c));
     if (ws.contact.fault[c] == sound) take(ne + c, -fault_trigger(ws, c));
@@ -172,16 +188,7 @@ void placed_margins(Workspace<T>& ws, double* z) {
   for (int i = 0; i < ws.guard.n_bounded; ++i) {
     const int c = ws.guard.bounded[i], k = ws.branch_of[ne + c];
     T seen = T(0);
-    take(ne + c, table_room(ws, c, k < 0 ? T(0) : edge.rate[k], seen));
-  }
-  int who = 0;
-  for (int i = 0; i < ws.guard.n_switching; ++i) {
-    const int k = ws.guard.switching[i];
-    take(ws.branch[k].direction, law_margin(ws, ws.branch[k], edge.rate + k, still, ws.state, rates, who).v);
-  }
-  for (int i = 0; i < ws.guard.n_bending; ++i) {
-    const int d = ne + ws.guard.bending[i];
-    take(d, law_margin(ws, make_branch(ws, d, forward), still, still, ws.state, rates, who).v);
+    take(ne + c, table_room(ws, c, k < 0 ? T(0) : ws.step_start.rate[k], seen));
   }
   for (int i = 0; i < ws.guard.n_gaps; ++i) {
     const int c = ws.guard.gap[i];
@@ -190,14 +197,41 @@ void placed_margins(Workspace<T>& ws, double* z) {
       if (abs(end) < infinity) take(ne + c, side * (end - ws.state[place_of(ws, c)]) / larger(1e-3, abs(end)));
     }
   }
+}
+
+/// Laws, elements and processes on their pieces.
+template <class T>
+void piece_margins(Workspace<T>& ws, const LeastMargins& take) {
+  const auto& edge = ws.step_start;
+  const T *rates = placed_state_rates(ws), still[most_ways] = {};
+  int who = 0;
+  for (int i = 0; i < ws.guard.n_switching; ++i) {
+    const int k = ws.guard.switching[i];
+    take(ws.branch[k].direction, law_margin(ws, ws.branch[k], edge.rate + k, still, ws.state, rates, who).v);
+  }
+  for (int i = 0; i < ws.guard.n_bending; ++i) {
+    const int d = int(ws.sys.elements) + ws.guard.bending[i];
+    take(d, law_margin(ws, make_branch(ws, d, forward), still, still, ws.state, rates, who).v);
+  }
   for (int i = 0; i < ws.guard.n_processes; ++i) {
     const int c = ws.guard.process[i];
     auto rate = [&](int d, T&) {
       const int k = ws.branch_of[d];
       return k < 0 || k >= ws.n_branches ? T(0) : edge.rate[k];
     };
-    take(nd + c, process_margin(ws, c, ws.time, ws.state, rates, rate, who).v);
+    take(ws.n_directions + c, process_margin(ws, c, ws.time, ws.state, rates, rate, who).v);
   }
+}
+
+/// Margins where the motion was looked at: above zero while nothing needs a decision, below where something does.
+template <class T>
+void placed_margins(Workspace<T>& ws, double* z) {
+  for (std::int64_t i = 0; i < count_margins(ws); ++i) z[i] = 1;
+  const LeastMargins take{z};
+  line_margins(ws, take);
+  held_margins(ws, take);
+  contact_margins(ws, take);
+  piece_margins(ws, take);
 }
 
 // ----------------------------------------------------------------------------------------------------------- decision

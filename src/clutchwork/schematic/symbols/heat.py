@@ -132,7 +132,20 @@ FLOWS = {
     "oil_flow": Symbol(oil, 12.0, 9.0, 9.0),
     "thermal_plate": Symbol(plate, 9.0, 10.0, 10.0),
 }
+
+
+def battery(pen: SymbolPen, _: Drawn) -> None:
+    """Two cells of plates."""
+    for x in (-6.0, 3.0):
+        pen.line((x, -8.0), (x, 8.0))
+        pen.line((x + 3.0, -4.0), (x + 3.0, 4.0))
+    pen.line((-3.0, 0.0), (3.0, 0.0))
+    pen.line((-12.0, 0.0), (-6.0, 0.0))
+    pen.line((6.0, 0.0), (12.0, 0.0))
+
+
 PROCESSES = {
+    "battery": Symbol(battery, 12.0, 9.0, 9.0),
     "pressure_actuator": Symbol(piston, 13.0, 7.0, 7.0),
     "diaphragm_spring": Symbol(diaphragm, 12.0, 9.0, 9.0),
     "flyweights": Symbol(weights, 12.0, 10.0, 10.0),
