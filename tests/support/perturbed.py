@@ -69,7 +69,6 @@ def push_sizes(standing: Standing, step: float) -> np.ndarray:
         "rad": 0.01,
         "m": 1e-3,
         "J": 100.0,
-        "W": 1e3,
     }
     names = [*((s.unit, s.value) for s in standing.linear.states)]
     columns = standing.instant.wiring.columns

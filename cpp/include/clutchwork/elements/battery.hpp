@@ -28,11 +28,13 @@ struct Battery : declared::Battery {
     const S r = value_in_cell(n, from, share, [&](int i) { return ohms[i]; });
     const S asked = at.input[Input::load] + at.input[Input::second_load] + at.input[Input::third_load] +
                     at.input[Input::fourth_load];
-    const S i = limited(p, current_of(u, r, asked), cell == 0, cell == n);
+    const S wanted = current_of(u, r, asked), i = limited(p, wanted, cell == 0, cell == n);
+    const bool serves = value(i) == value(wanted) && has_current(u, r, asked);
     rates[charge] = -i;
     rates[energy] = u * i;
     rates[loss] = r * i * i;
-    rates[unserved] = asked - (u - r * i) * i;
+    // exactly nothing, no round-off of a difference
+    rates[unserved] = serves ? S(0) : asked - (u - r * i) * i;
   }
 
   template <class T, class S>
@@ -58,10 +60,13 @@ struct Battery : declared::Battery {
   /// Current that gives a power: the smaller root; where there is none, that of the most power.
   template <class S>
   static S current_of(const S& u, const S& r, const S& power) {
-    const S square = u * u, left = square - S(4) * r * power;
     // at the most power the root has no slope
-    if (value(left) <= 1e-14 * value(square)) return u / (S(2) * r);
-    return S(2) * power / (u + sqrt(left));
+    if (!has_current(u, r, power)) return u / (S(2) * r);
+    return S(2) * power / (u + sqrt(u * u - S(4) * r * power));
+  }
+  template <class S>
+  static bool has_current(const S& u, const S& r, const S& power) {
+    return value(u * u - S(4) * r * power) > 1e-14 * value(u * u);
   }
   template <class T, class S>
   static S limited(const Params<T>& p, const S& i, bool empty, bool full) {

@@ -145,7 +145,8 @@ void line_margins(const Workspace<T>& ws, const LeastMargins& take) {
     const int d = ws.branch[g.branch].direction;
     const bool is_slip = g.kind == LineGuard::slip;
     const bool is_fresh = is_slip && ws.contact.forced[d - int(ws.sys.elements)] != 0;
-    const double missed = !is_slip ? 0.1 * ws.options.rtol : is_fresh ? ws.options.rtol : 0.0;
+    // a slip is missed by half of what counts as zero, so that the decision takes it for zero
+    const double missed = !is_slip ? 0.1 * ws.options.rtol : is_fresh ? ws.options.rtol : -0.5 * placed_slack;
     take(d, g.sign * (ws.step_start.rate[g.branch] - g.level) / (size + abs(g.level)) + missed);
   }
 }
@@ -236,24 +237,29 @@ void placed_margins(Workspace<T>& ws, double* z) {
 
 // ----------------------------------------------------------------------------------------------------------- decision
 
-/// Open contacts move the way they do, which nothing has watched: it is no event.
+/// Open contacts move the way they do, which nothing has watched: it is no event. So does one that slips, where its
+/// solver has located the zero of its slip too late for the core to take it for zero.
 template <class T>
 void direct_placed(Workspace<T>& ws) {
   const int ne = int(ws.sys.elements);
   const double zero = slip_tolerance(ws);
   for (int c = 0; c < ws.sys.contacts; ++c) {
-    if (ws.contact.loaded[c] || ws.contact.compliant[c] || is_stop(ws, c)) continue;
+    if (ws.contact.compliant[c] || is_stop(ws, c)) continue;
     const double slip = rate_of(ws, ne + c);
-    if (abs(slip) > zero) ws.contact.mode[c] = slip > 0 ? forward : backward;
+    const int mode = ws.contact.mode[c];
+    const bool passed = (mode == forward || mode == backward) && free_way(ws, c) == 0 && slip * mode < 0;
+    if ((ws.contact.loaded[c] && !passed) || abs(slip) <= zero) continue;
+    ws.contact.mode[c] = slip > 0 ? forward : backward;
+    if (passed) ws.contact.forced[c] = 0;
   }
 }
 
-/// Whether all margins where the motion was looked at are above zero.
+/// Whether all margins where the motion was looked at are above a limit.
 template <class T>
-bool all_hold(Workspace<T>& ws, double* margins) {
+bool all_hold(Workspace<T>& ws, double* margins, double limit) {
   placed_margins(ws, margins);
   bool hold = true;
-  for (std::int64_t i = 0; i < count_margins(ws); ++i) hold = hold && margins[i] > 0;
+  for (std::int64_t i = 0; i < count_margins(ws); ++i) hold = hold && margins[i] > limit;
   return hold;
 }
 
@@ -261,14 +267,16 @@ bool all_hold(Workspace<T>& ws, double* margins) {
 /// `anew`: signals may have jumped. `done` at the same time, with another state where something was due.
 template <class T>
 Status decide_placed(Workspace<T>& ws, bool anew, double* row, double* margins) {
-  constexpr double least = 1e-12, most = 1e-6;
+  // a solver that has located its zero has seen it below by less than round-off
+  constexpr double least = 1e-12, most = 1e-6, round_off = 1e-3 * placed_slack;
   const double t = ws.time, grain = 1 + abs(t);
   // a knot that is as good as reached is reached
   const bool due = ws.in.next_knot - t <= 1e3 * least * grain;
   const double start = due ? larger(t, ws.in.next_knot) : t;
   direct_placed(ws);
   Status status = look_placed(ws, row);
-  if (status != Status::done || (!anew && !due && !ws.params_changed && all_hold(ws, margins))) return status;
+  if (status != Status::done || (!anew && !due && !ws.params_changed && all_hold(ws, margins, round_off)))
+    return status;
   constexpr int rounds = 64;
   double span = least * grain;
   for (int round = 0; round < rounds && span <= most * grain; ++round) {
@@ -284,7 +292,7 @@ Status decide_placed(Workspace<T>& ws, bool anew, double* row, double* margins) 
     ws.in.time = -infinity;
     inputs_at(ws, t);
     status = look_placed(ws, row, ws.fresh_phase);
-    if (status != Status::done || all_hold(ws, margins)) return status;
+    if (status != Status::done || all_hold(ws, margins, 0)) return status;
   }
   return status;
 }
