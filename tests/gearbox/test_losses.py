@@ -88,7 +88,11 @@ def test_parts() -> None:
                 assert {name: of[i][j][k] for name, of in found.shares.items()} == pytest.approx(wanted, rel=1e-12)
                 assert found.power[i][j][k] == pytest.approx(sum(wanted.values()), rel=1e-12)
                 power = speed * torque
-                share = max(0.0, 1 - found.power[i][j][k] / abs(power)) if power else 0.0
+                lost = found.power[i][j][k]
+                # what comes back has to overcome the losses first
+                share = (
+                    0.0 if power == 0 else abs(power) / (abs(power) + lost) if power < 0 else max(0.0, 1 - lost / power)
+                )
                 assert found.efficiency[i][j][k] == pytest.approx(share, rel=1e-12)
     assert np.shape(found.power) == (2, 3, 3)
     assert "open elements" in str(found)

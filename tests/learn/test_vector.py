@@ -97,7 +97,7 @@ def test_without_a_reset_of_its_own() -> None:
 
 def test_a_run_that_ends_is_terminated() -> None:
     d = cw.Driveline("overloaded")
-    d.add(cw.Torque("motor", shaft=d.shaft("a", inertia=1e-3), torque=0.0))
+    d.add(cw.Torque("motor", shaft=d.shaft("a", inertia=1e-3, speed=5.0), torque=0.0))
     envs = cw.vector_environment(
         d,
         2,
@@ -108,10 +108,12 @@ def test_a_run_that_ends_is_terminated() -> None:
         period=0.4,
     )
     envs.reset(seed=0)
-    _, _, terminated, _, _ = envs.step(np.array([[0.0], [1.0]]))
+    seen, _, terminated, _, _ = envs.step(np.array([[0.0], [1.0]]))
     assert terminated.tolist() == [False, True]
-    seen, *_ = envs.step(np.zeros((2, 1)))
-    assert seen[1] == 0.0
+    # as a single environment, it shows what was seen last
+    assert seen[1] == 5.0
+    envs.step(np.zeros((2, 1)))
+    assert envs.sims.time.tolist() == [0.8, 0.0]
 
 
 @pytest.mark.parametrize(
@@ -140,3 +142,35 @@ def test_wrong_actions_are_named() -> None:
     envs.reset()
     with pytest.raises(cw.UseError, match=r"array \(6, 1\)"):
         envs.step(np.zeros(COUNT))
+
+
+def test_the_last_period_has_the_events_of_all() -> None:
+    """0.3 s less two periods of 0.1 s is less than a period by round-off."""
+    seen = []
+
+    def reward_of(moment: Any) -> Any:
+        seen.append(moment.events)
+        return np.zeros(COUNT)
+
+    d = launch()
+    envs = cw.vector_environment(
+        d, COUNT, 0.3, actions=ACTIONS, observations=["car.speed"], reward=reward_of, period=0.1
+    )
+    envs.reset(seed=0)
+    for action in (-1.0, -1.0, 1.0):
+        envs.step(np.full((COUNT, 1), action))
+    assert sorted(seen[-1]) == list(range(COUNT))
+    assert (envs.sims.time == 0.3).all()
+
+
+@pytest.mark.parametrize("seed", [np.int64(3), 3, [3, 4, 5, 6, 7, 8]])
+def test_seeds_of_any_kind(seed: Any) -> None:
+    envs = many(vary=VARY)
+    first, _ = envs.reset(seed=seed)
+    envs.step(np.zeros((COUNT, 1)))
+    again, _ = envs.reset(seed=3)
+    np.testing.assert_array_equal(first, again)
+    with pytest.raises(cw.UseError, match="give one, or 6 of them"):
+        envs.reset(seed=[1])
+    with pytest.raises(cw.UseError, match="give reset_mask alone"):
+        envs.reset(options={"values": {}})

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import signal
+import threading
 import warnings
 from typing import Any
 
@@ -31,7 +33,10 @@ def joint(**gear: Any) -> cw.Driveline:
 def overloaded() -> cw.Driveline:
     """A shaft that a torque drives beyond any number once it is large."""
     d = cw.Driveline("overloaded")
-    d.add(cw.Torque("motor", shaft=d.shaft("a", inertia=1e-3), torque=0.0))
+    a = d.shaft("a", inertia=1e-3)
+    d.add(cw.Torque("motor", shaft=a, torque=0.0))
+    grip = cw.Coulomb(static=0.1, kinetic=0.1)
+    d.add(cw.Brake("grip", shaft=a, friction=grip, gain=1.0, normal_force=0.0))
     return d
 
 
@@ -109,6 +114,8 @@ def test_one_that_ends_leaves_the_others() -> None:
     assert "not finite" in sims.message(2) or "finite" in sims.message(2)
     assert sims.message(0) == ""
     assert np.isnan(sims["a.speed"]).tolist() == sims.failed.tolist()
+    assert sims["grip.state"].tolist() == ["open", "open", "", "open", "open"]
+    assert np.isnan(sims["grip.mode"]).tolist() == sims.failed.tolist()
     assert set(sims["a.speed"][~sims.failed]) == {alone["a.speed"]}
     assert sims.time[2] < sims.time[0]
     sims.reset(sims.failed)
@@ -188,13 +195,17 @@ def test_bounds_are_those_of_the_model() -> None:
         (lambda sims: sims.set("motor.torqe", 1.0), "did you mean 'motor.torque'"),
         (lambda sims: sims.set("motor.torque", [1.0, 2.0]), "give one number, or an array of 3 numbers"),
         (lambda sims: sims.set("motor.torque", [1.0, 2.0, float("nan")]), "finite"),
-        (lambda sims: sims.set("motor.torque"), "has no value"),
+        (lambda sims: sims.set("motor.torque"), "one name and its values"),
+        (lambda sims: sims.set({"motor.torque": 1.0}, 2.0), "values by name, or one name"),
+        (lambda sims: sims.set("link.inertia", 1.0), "give it by `vary`"),
+        (lambda sims: sims.message(9), "give numbers from 0 to 2"),
+        (lambda sims: sims.restore("x"), "give what sims.save"),
         (lambda sims: sims.advance(-1.0), "must not be negative"),
         (lambda sims: sims.advance(0.1, which=[0, 3]), "give numbers from 0 to 2"),
         (lambda sims: sims.advance(0.1, which=[0, 0]), "each once"),
         (lambda sims: sims["rotor.sped"], "did you mean 'rotor.speed'"),
         (lambda sims: cw.Simulators(joint(), 0), "count is 0"),
-        (lambda sims: cw.Simulators(joint(), 3, vary={"link.inertia": [1.0]}), "give 3, one for each run"),
+        (lambda sims: cw.Simulators(joint(), 3, vary={"link.inertia": [1.0]}), "give 3 values, one for each run"),
         (lambda sims: cw.Simulators(joint(), 2, vary={"link.inertia": [1.0, -1.0]}), "inertia"),
     ],
 )
@@ -205,3 +216,20 @@ def test_wrong_calls_are_named(call: Any, words: str) -> None:
     # nothing was set
     sims.advance(0.01)
     assert sims["rotor.speed"].tolist() == [0.0, 0.0, 0.0]
+
+
+def test_an_interrupt_leaves_every_run_where_it_is(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Those that no thread has begun have not got there."""
+    d = cw.Driveline("shaken")
+    a, b = d.shaft("a", inertia=0.1), d.shaft("b", inertia=0.1)
+    d.add(cw.Torque("shaker", shaft=a, torque=cw.Sine(amplitude=1.0, frequency=50.0)))
+    d.add(cw.SpringDamper("spring", base=a, follower=b, stiffness=1e4, damping=0.1))
+    sims = cw.Simulators(d, 200, threads=1)
+    threading.Timer(0.3, signal.raise_signal, [signal.SIGINT]).start()
+    with pytest.raises(KeyboardInterrupt):
+        sims.advance(100.0)
+    assert sims.time.tolist() == [run.time for run in sims._runs]
+    assert len(set(sims.time)) > 1
+    assert not sims.failed.any()
+    # none has a number that nobody wrote
+    assert (sims["a.speed"] == [run.row()[0] for run in sims._runs]).all()

@@ -7,6 +7,7 @@ from math import inf
 from typing import NamedTuple
 
 from clutchwork.declare import Component, Found, Role, SignalLike, State, component, numbers, option, param, signal
+from clutchwork.declare.node import SupplyPower
 from clutchwork.elements.bases.grids import at_each
 
 # a current that nothing limits
@@ -28,7 +29,7 @@ class BatteryAnswer(NamedTuple):
         State("charge", "1", "what is in it, over its capacity"),
         State("energy", "J", "taken out of its cells since the start, at their open-circuit voltage"),
         State("loss", "J", "heat of its resistance since the start"),
-        State("unserved", "J", "asked for beyond its limits since the start: 0 where the supply is sound"),
+        State("unserved", "J", "asked for beyond its limits since the start, less what it refused to take"),
     ),
     hooks=("margin", "cross"),
 )
@@ -39,7 +40,8 @@ class Battery(Component):
     negative where it charges; a signal or a number for other consumers. The current follows from
     `voltage current - resistance current^2 = power`. Use it in hybrids and electric vehicles. Controllers read its
     charge as a signal of the run and ask `limits`; what motors take beyond these, or out of an empty battery, is
-    counted as `unserved`, so that `sum of loads = energy - loss + unserved` always holds.
+    counted as `unserved`, so that `sum of loads = energy - loss + unserved` always holds. It may fall again where the
+    battery refuses to take what comes back: look at it over the whole run.
 
     Source: L. Guzzella, A. Sciarretta, Vehicle Propulsion Systems, 3rd ed., Springer 2013, section 4.5.
     """
@@ -70,6 +72,9 @@ class Battery(Component):
                 found.append((name, f"has {given} values for {count} charges", "give one for each charge"))
         if any(voltage <= 0.0 for voltage in self.voltages):
             found.append(("voltages", "has a voltage of 0", "give voltages above 0"))
+        motors = [one.of for one in self._loads() if isinstance(one, SupplyPower)]
+        if len({id(motor) for motor in motors}) < len(motors):
+            found.append(("second_load", "has a motor that another load has", "give each motor once"))
         if count < 2:
             found.append(("charges", "has one charge", "give at least that of an empty and that of a full battery"))
         elif self.charges[-1] > 1.0:
@@ -90,6 +95,9 @@ class Battery(Component):
     def voltage(self, charge: float) -> float:
         """Open-circuit voltage [V] at a charge."""
         return self._at(self.voltages, charge)
+
+    def _loads(self) -> tuple[object, ...]:
+        return self.load, self.second_load, self.third_load, self.fourth_load
 
     def resistance(self, charge: float) -> float:
         """Resistance [ohm] at a charge."""
@@ -115,7 +123,8 @@ class Battery(Component):
         """Least and largest current: none out of an empty battery, none into a full one, the one of the most power."""
         resistance = self.resistance(charge)
         most = self.voltage(charge) / (2.0 * resistance) if resistance else inf
-        low = 0.0 if charge >= self.charges[-1] else -self.max_charging_current
+        least = inf if self.max_charging_current >= NO_LIMIT else self.max_charging_current
+        low = 0.0 if charge >= self.charges[-1] else -least
         high = 0.0 if charge <= self.charges[0] else min(self.max_current, most)
         return low, high
 
@@ -123,4 +132,4 @@ class Battery(Component):
         return at_each(tuple(zip(self.charges, values, strict=True)), (charge,))[0]
 
     def _power(self, charge: float, current: float) -> float:
-        return (self.voltage(charge) - self.resistance(charge) * current) * current
+        return -inf if current == -inf else (self.voltage(charge) - self.resistance(charge) * current) * current

@@ -126,7 +126,11 @@ class Gearbox(Definition):
         named = isinstance(mode, str)
         closed = self.closed_in(mode) if isinstance(mode, str) else self._elements("box.operating_point", mode)
         members = dict.fromkeys(self.members)
-        known = {self.input: speed, self.output: output_speed, **(speeds or {})}
+        known = {self.input: speed, self.output: output_speed}
+        twice = [name for name, value in known.items() if value is not None and name in (speeds or {})]
+        if twice:
+            raise UseError("box.operating_point", [f"speed of {quote(name)} is given twice" for name in twice])
+        known |= speeds or {}
         wanted = operating.Wanted(
             operating.exactly({name: value for name, value in known.items() if value is not None}, members, "member"),
             exact(torque),

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
-from math import log10, pi
+from math import isfinite, log10, pi
 from typing import TYPE_CHECKING, TypeAlias
 
 from clutchwork.base.classes import dataclass
@@ -37,6 +37,14 @@ class Oil:
     viscosity_40: float
     viscosity_100: float
     density: float = 850.0
+
+    def __post_init__(self) -> None:
+        """UseError for a viscosity in other units, such as mm2/s."""
+        if not 1e-7 < self.viscosity_100 < self.viscosity_40 < 1e-2:
+            given = f"viscosities are {self.viscosity_40:g} and {self.viscosity_100:g} m2/s"
+            raise UseError(
+                "cw.Oil", [f"{given} at 40 and 100 degC: give m2/s, 30 mm2/s is 30e-6, the colder one larger"]
+            )
 
     def viscosity(self, temperature: float) -> float:
         """Kinematic viscosity at a temperature [K], in m2/s: equation (14)."""
@@ -197,8 +205,10 @@ class LossMap:
 
 
 def _efficiency(power: float, lost: float) -> float:
-    """Of power that drives or, negative, comes back."""
-    return max(0.0, 1.0 - lost / abs(power)) if power else 0.0
+    """Of power that drives or, negative, is what is left of a load that drives the box backward."""
+    if power < 0.0:
+        return abs(power) / (abs(power) + lost)
+    return max(0.0, 1.0 - lost / power) if power else 0.0
 
 
 def loss_map(
@@ -213,6 +223,10 @@ def loss_map(
     if problems:
         raise UseError(CALL, problems)
     temperatures, speeds, torques = (tuple(map(float, axis)) for axis in axes)
+    if not all(map(isfinite, (*temperatures, *speeds, *torques))) or min(temperatures, default=ZERO) < 200.0:
+        raise UseError(
+            CALL, ["temperatures, speeds and torques must be finite, and temperatures in K, 80 degC is 353.15"]
+        )
     share = _mesh_share(box, now)
     layer = tuple(tuple(share[speed * torque > 0] * abs(speed * torque) for torque in torques) for speed in speeds)
     meshes = (layer,) * len(temperatures)
@@ -249,11 +263,11 @@ def _mesh_share(box: Definition, now: GearState) -> tuple[float, float]:
 
 
 def _lost_share(box: Definition, now: GearState, turning: Mapping[str, Fraction]) -> float:
-    """All of it where the box locks itself in that direction."""
+    """All of it where the box locks itself in that direction; more than that may be lost of what comes back."""
     found = lossy_balance(box, now.closed, turning)
     if found is None or found.load is None:
         return 1.0
-    return min(1.0, max(0.0, float(turning[box.input] + found.load * turning[box.output])))
+    return max(0.0, float(turning[box.input] + found.load * turning[box.output]))
 
 
 def _lost(now: GearState, oil: Oil, parts: Sequence[LossPart], at: tuple[float, float, float]) -> float:

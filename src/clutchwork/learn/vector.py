@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
+from numbers import Integral
 from typing import Any
 
 import numpy as np
@@ -15,6 +16,7 @@ from clutchwork.base.errors import ClutchworkError, UseError
 from clutchwork.base.quote import quote
 from clutchwork.learn.moments import Moments
 from clutchwork.learn.task import Task
+from clutchwork.results.events import Events
 from clutchwork.stepping.simulators import Simulators
 
 Array = NDArray[Any]
@@ -43,14 +45,17 @@ class DrivelineVectorEnv(VectorEnv[Array, Array, Array]):
         self.observation_space = batch_space(self.single_observation_space, self.num_envs)
         self._generators = [np.random.default_rng() for _ in range(self.num_envs)]
         self._over = np.zeros(self.num_envs, dtype=bool)
+        self._last = np.zeros((self.num_envs, len(task.observations.names)), dtype=np.float32)
         # names are looked up now: a wrong one is an error before the first episode
         sims.set(task.actions.values(np.zeros(len(task.actions.names))))
         self._seen()
         sims.reset()
 
     def _seen(self) -> Array:
-        """What all see."""
-        return self._task.observations.scaled(self.sims[self._task.observations.names])
+        """What all see; where a run cannot go on that is what was seen last."""
+        seen = self._task.observations.scaled(self.sims[self._task.observations.names])
+        self._last = np.where(self.sims.failed[:, None], self._last, seen)
+        return self._last.copy()
 
     def reset(
         self, *, seed: int | Sequence[int | None] | None = None, options: dict[str, Any] | None = None
@@ -59,15 +64,25 @@ class DrivelineVectorEnv(VectorEnv[Array, Array, Array]):
 
         Parameters: seed, that of the first, the others follow, or one for each.
         """
+        others = sorted(set(options or {}) - {"reset_mask"})
+        if others:
+            raise UseError("env.reset", [f"options has {quote(one)}: give reset_mask alone" for one in others])
         mask = np.asarray((options or {}).get("reset_mask", np.ones(self.num_envs, dtype=bool)))
         if mask.dtype != bool or mask.shape != (self.num_envs,):
             raise UseError("env.reset", [f"reset_mask is {quote(mask)}: say whether, for each of {self.num_envs}"])
-        seeds = range(seed, seed + self.num_envs) if isinstance(seed, int) else seed or [None] * self.num_envs
-        for number, one in enumerate(seeds):
+        for number, one in enumerate(self._seeds(seed)):
             if one is not None and mask[number]:
                 self._generators[number] = np.random.default_rng(one)
         self._begin(mask)
         return self._seen(), {}
+
+    def _seeds(self, seed: Any) -> list[int | None]:
+        """The seed of each."""
+        if seed is None or isinstance(seed, Integral):
+            return [None if seed is None else int(seed) + number for number in range(self.num_envs)]
+        if not isinstance(seed, Sequence | np.ndarray) or len(seed) != self.num_envs:
+            raise UseError("env.reset", [f"seed is {quote(seed)}: give one, or {self.num_envs} of them"])
+        return [None if one is None else int(one) for one in seed]
 
     def _begin(self, mask: NDArray[np.bool_]) -> None:
         """New episodes, each with what varies drawn anew."""
@@ -100,7 +115,7 @@ class DrivelineVectorEnv(VectorEnv[Array, Array, Array]):
             infos = {"final_obs": seen.copy(), "_final_obs": self._over.copy()}
             self._begin(self._over.copy())
             seen = self._seen()
-        return np.nan_to_num(seen), rewards, terminated, truncated, infos
+        return seen, rewards, terminated, truncated, infos
 
     def _gone_on(self, values: dict[str, Array], going: NDArray[np.intp]) -> Moments:
         """One period of those that go on."""
@@ -108,15 +123,15 @@ class DrivelineVectorEnv(VectorEnv[Array, Array, Array]):
         before = self.sims.readings()
         for name, numbers in values.items():
             self.sims.set(name, numbers[going], which=going)
-        left = t_end - self.sims.time[going]
-        last = left < period
-        self.sims.advance(period, which=going[~last])
         # the last period ends with the episode
-        for number, rest in zip(going[last].tolist(), left[last].tolist(), strict=True):
-            if rest > 0.0:
-                self.sims.advance(rest, which=[number])
+        left = t_end - self.sims.time[going]
+        steps = np.where(left < period * (1.0 - ROUND_OFF), left, period)
+        events = dict[int, Events]()
+        for step in np.unique(steps[steps > 0.0]).tolist():
+            self.sims.advance(step, which=going[steps == step])
+            events |= self.sims.events
         sims = self.sims
-        return Moments(sims.time, period, values, before, sims.readings(), sims.events, sims.failed)
+        return Moments(sims.time, period, values, before, sims.readings(), events, sims.failed)
 
     def _accepted(self, actions: Any) -> dict[str, Array]:
         """Actions of all as values by name; UseError for what is none."""

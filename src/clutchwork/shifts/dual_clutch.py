@@ -10,12 +10,12 @@ from clutchwork.base.classes import dataclass
 from clutchwork.base.errors import UseError, near
 from clutchwork.base.quote import quote
 from clutchwork.shifts.preselect import Halves, expected
+from clutchwork.shifts.schedule import ShiftSchedule
 
 if TYPE_CHECKING:
     from clutchwork.gearbox.gearbox import Gearbox
     from clutchwork.run.trajectory import Trajectory
     from clutchwork.shifts.plant import Plant
-    from clutchwork.shifts.schedule import ShiftSchedule
     from clutchwork.stepping.simulator import Simulator
 
 # sleeves further in are engaged, further out free
@@ -81,7 +81,9 @@ class DualClutch:
     torque is handed over then. Gears of one clutch are reached through one of the other.
 
     Parameters: box; plant, of `cw.shifts.plant_of`; prefix, name of the Transmission; gear, at the start; schedule,
-    which gear to drive in, without one `request` asks for gears; settings.
+    which gear to drive in, without one `request` asks for gears; settings; launch, whether it begins with the clutch
+    open and drives off. It launches once, and keeps its clutch closed down to rest: begin another one to drive off
+    again, or backward.
     """
 
     def __init__(
@@ -102,6 +104,8 @@ class DualClutch:
             raise UseError(
                 "cw.shifts.DualClutch", [f"gear is {quote(gear)}{near(gear, known, f'choose from {known}')}"]
             )
+        if schedule is not None and not isinstance(schedule, ShiftSchedule):
+            raise UseError("cw.shifts.DualClutch", [f"schedule is {quote(schedule)}: give a cw.shifts.ShiftSchedule"])
         self.box, self.plant, self.prefix, self.schedule = box, plant, prefix, schedule
         self.settings = settings or DualClutchSettings()
         self.gear, self.target, self.waiting = gear, "", ""
@@ -139,7 +143,13 @@ class DualClutch:
     def request(self, gear: str) -> None:
         """Ask for a gear; it is driven in as soon as it can be."""
         if gear not in self.layout.clutch:
-            raise UseError("control.request", [f"{quote(gear)} is not a gear{near(gear, self.layout.clutch)}"])
+            known = list(self.layout.clutch)
+            raise UseError(
+                "control.request", [f"{quote(gear)} is not a gear{near(gear, known, f'choose from {known}')}"]
+            )
+        if self.layout.ratios[gear] * self.layout.ratios[self.gear] < 0.0:
+            why = f"{self.gear} to {gear} turns the drive around"
+            raise UseError("control.request", [f"{why}: come to rest and begin a DualClutch in it, with launch=True"])
         self._asked = gear
 
     def step(self, time: float, now: Mapping[str, float], torque: float, throttle: float = 0.0) -> dict[str, float]:

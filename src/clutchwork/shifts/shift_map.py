@@ -6,7 +6,7 @@ import csv
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import field
 from itertools import pairwise
-from math import inf
+from math import inf, isfinite
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -28,6 +28,8 @@ Line = Sequence[tuple[float, float]]
 INPUT, OUTPUT, VEHICLE = "input", "output", "vehicle"
 # SI per unit of a speed in a table
 UNITS = {"rad/s": 1.0, "rpm": np.pi / 30.0, "1/min": np.pi / 30.0, "m/s": 1.0, "km/h": 1.0 / 3.6, "mph": 0.44704}
+LINEAR = ("m/s", "km/h", "mph")
+FITS = 'give rad/s or rpm for "input" and "output", m/s, km/h or mph for "vehicle"'
 # least gap between the lines up and down, as a share of the speed up
 GAP = 0.02
 
@@ -69,7 +71,7 @@ class ShiftMap:
     ratios: Mapping[str, float]
     lines: Mapping[Pair, Line]
     of: str = OUTPUT
-    per_output: float = 1.0
+    per_output: float | None = None
     kickdown: float = inf
     kickdown_speeds: Mapping[Pair, float] = field(default_factory=dict)
     fastest: float = inf
@@ -77,8 +79,10 @@ class ShiftMap:
     skips: bool = True
 
     def __post_init__(self) -> None:
-        """Tables that never change. ModelError for lines that are missing, or with which gears hunt."""
-        vars(self).update(ratios=frozen(self.ratios), inhibits=tuple(self.inhibits))
+        """Tables that never change. ModelError for lines that are missing or wrong, or with which gears hunt."""
+        lines = {pair: tuple(map(tuple, line)) for pair, line in self.lines.items()}
+        vars(self).update(ratios=frozen(self.ratios), inhibits=tuple(self.inhibits), lines=frozen(lines))
+        vars(self).update(kickdown_speeds=frozen(dict(self.kickdown_speeds)))
         found = [*self._missing()] or [*self._hunting()]
         if found:
             raise ModelError(found, "shift map")
@@ -94,6 +98,8 @@ class ShiftMap:
         """
         if unit not in UNITS:
             raise UseError("ShiftMap.from_csv", [f"unit is {quote(unit)}; choose from {listed(UNITS)}"])
+        if (unit in LINEAR) != (of == VEHICLE):
+            raise UseError("ShiftMap.from_csv", [f"unit is {quote(unit)}, and the speeds are of {quote(of)}: {FITS}"])
         rows, lines = _rows(path_of("ShiftMap.from_csv", path, "map.csv")), dict[Pair, list[tuple[float, float]]]()
         for pair, pedal, speed in rows:
             lines.setdefault(pair, []).append((pedal, speed * UNITS[unit]))
@@ -122,7 +128,7 @@ class ShiftMap:
         else:
             points = self.lines[pair]
             value = float(np.interp(pedal, [point[0] for point in points], [point[1] for point in points]))
-        return value / {INPUT: self.ratios[pair[0]], OUTPUT: 1.0, VEHICLE: self.per_output}[self.of]
+        return value / {INPUT: self.ratios[pair[0]], OUTPUT: 1.0, VEHICLE: self.per_output or 1.0}[self.of]
 
     def _step(self, order: Sequence[str], place: int, now: Measured) -> int:
         here, speed = order[place], now.output_speed
@@ -135,10 +141,26 @@ class ShiftMap:
     def _missing(self) -> Iterator[Problem]:
         if self.of not in (INPUT, OUTPUT, VEHICLE):
             yield Problem("shift map", "of", f"is {quote(self.of)}", remedy="choose from input, output, vehicle")
+        if self.of == VEHICLE and not self.per_output:
+            remedy = "give per_output, speed of the vehicle per speed of the output [m]"
+            yield Problem("shift map", "per_output", "is missing for lines of the vehicle", remedy=remedy)
+        yield from self._wrong()
         for lower, higher in pairwise(self.ratios):
             for pair in ((lower, higher), (higher, lower)):
                 if pair not in self.lines or len(self.lines[pair]) == 0:
                     yield Problem(f"shift {'-'.join(pair)}", "", "has no line", remedy="give points (pedal, speed)")
+
+    def _wrong(self) -> Iterator[Problem]:
+        """Lines of gears that are not neighbours, and points that are none."""
+        known = {way for pair in pairwise(self.ratios) for way in (pair, pair[::-1])}
+        for pair, line in self.lines.items():
+            name, pedals = f"shift {'-'.join(pair)}", [point[0] for point in line]
+            if pair not in known:
+                yield Problem(name, "", "is not between two gears that follow each other", remedy="leave it out")
+            if not all(0.0 <= pedal <= 1.0 and isfinite(speed) and speed >= 0.0 for pedal, speed in line):
+                yield Problem(name, "", "has a point that is none", remedy="give pedals from 0 to 1 and speeds from 0")
+            if sorted(set(pedals)) != pedals:
+                yield Problem(name, "", "has pedals that do not rise", remedy="give each pedal once, in rising order")
 
     def _hunting(self) -> Iterator[Problem]:
         """An upshift must leave the output above the line down, and no line may cross the one of the next gear."""

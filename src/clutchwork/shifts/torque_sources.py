@@ -37,6 +37,8 @@ class TorqueSource:
         """Limits that leave something between them."""
         if self.least > self.most:
             raise UseError("TorqueSource", [f"least is {self.least:g} N m, above most, {self.most:g} N m; swap them"])
+        if not self.ratio:
+            raise UseError("TorqueSource", ["ratio is 0: give the speed of the motor over that of the input"])
 
     def gives(self, wanted: float) -> tuple[float, float]:
         """Torque of its signal [N m], and what of a change at the input [N m] is left for others."""

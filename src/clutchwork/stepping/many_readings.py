@@ -17,7 +17,10 @@ if TYPE_CHECKING:
 
 
 class ManyReadings(Mapping[str, Any]):
-    """Signals by name, each an array with a number of every run; NaN where a run cannot go on."""
+    """Signals by name, each an array with a number of every run.
+
+    Where a run cannot go on there is NaN, and "" as the state of a contact.
+    """
 
     def __init__(
         self, rows: NDArray[np.float64], failed: NDArray[np.bool_], systems: Sequence[System], options: Options
@@ -31,7 +34,9 @@ class ManyReadings(Mapping[str, Any]):
     def __getitem__(self, name: str) -> Any:
         form = self._channels(self._systems[0])[name].evaluate
         values = np.asarray(form(self._rows) if self._is_alike(name, form) else self._each(name))
-        return np.where(self._failed, np.nan, values) if values.dtype.kind == "f" and self._failed.any() else values
+        if not self._failed.any():
+            return values
+        return np.where(self._failed, "" if values.dtype.kind == "U" else np.nan, values)
 
     def _is_alike(self, name: str, form: Any) -> bool:
         """Whether a signal follows from the rows of all in the same way."""

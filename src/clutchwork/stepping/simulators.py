@@ -11,7 +11,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from clutchwork.assembly.system import System
 from clutchwork.assembly.wiring import row_columns
-from clutchwork.base.errors import ModelError, UseError
+from clutchwork.base.errors import ModelError, Problem, UseError
 from clutchwork.base.plural import counted
 from clutchwork.base.quote import quote
 from clutchwork.declare.calls import explained, explained_methods
@@ -116,14 +116,17 @@ class Simulators:
         chosen = chosen[ends[chosen] > self._times[chosen]]
         found, raised = core().advance_many(self._runs, chosen, ends, self._rows, self._status, self._threads)
         self._events = np.concatenate([np.reshape(one, (-1, 1 + len(EVENT))) for one in found])
+        if raised is not None:
+            # some have got there, some have not begun: each stands where it is, and can go on
+            self._status[chosen], self._stale[chosen] = DONE, True
+            for number in chosen.tolist():
+                self._times[number] = self._runs[number].time
+            raise raised
         reached = self._status[chosen] == DONE
         self._times[chosen[reached]] = ends[chosen[reached]]
         self._stale[chosen] = ~reached
         for number in chosen[~reached].tolist():
             self._times[number] = self._runs[number].time
-        if raised is not None:
-            self._status[self._status != DONE] = DONE
-            raise raised
 
     # ------------------------------------------------------------------------------------------------------ setting
 
@@ -135,8 +138,9 @@ class Simulators:
         holds the value [in its unit] in place of that of the model until it is set again, or until `reset`. ModelError
         names all that is wrong at once, and nothing is set then. Other parameters are those of `vary`.
         """
-        if not isinstance(name, Mapping) and value is None:
-            raise UseError("sims.set", [f"{quote(name)} has no value; write sims.set({quote(name)}, values)"])
+        if isinstance(name, Mapping) == (value is not None):
+            wanted = "values by name, or one name and its values"
+            raise UseError("sims.set", [f"{quote(name)} and {quote(value)} do not fit; give {wanted}"])
         chosen = self._chosen("sims.set", which)
         given: Mapping[Any, Any] = name if isinstance(name, Mapping) else {name: value}
         plan, problems = list[tuple[int, Array]](), list[Any]()
@@ -160,7 +164,7 @@ class Simulators:
         signal = self._signals.get(name) if isinstance(name, str) else None
         if signal is None:
             linked = given_by_others(self._system, name) if isinstance(name, str) else None
-            return np.empty(0), [linked or unknown(self._system, name)]
+            return np.empty(0), [linked or self._parameter(name) or unknown(self._system, name)]
         array = _array(given)
         if array is None or array.shape not in ((), (count,)):
             wanted = f"give one number, or an array of {counted(count, 'numbers')}"
@@ -171,6 +175,12 @@ class Simulators:
         tried |= {float("nan")} if not np.isfinite(array).all() else set()
         problems = [problem for one in tried for problem in signal.read(one)[1]]
         return np.array(np.broadcast_to(array, (count,))), problems
+
+    def _parameter(self, name: Any) -> Problem | None:
+        """Why a parameter is not set while runs go on."""
+        if not isinstance(name, str) or name not in self._system.parameters:
+            return None
+        return Problem(name, "", "is a parameter, which a run keeps", remedy="give it by `vary`, here or of `reset`")
 
     # ------------------------------------------------------------------------------------------------------ reading
 
@@ -199,6 +209,7 @@ class Simulators:
 
     def message(self, number: int) -> str:
         """Why a run cannot go on; "" where it can."""
+        (number,) = self._chosen("sims.message", [number]).tolist()
         status = int(self._status[number])
         return "" if status == DONE else message_of(self._own[number], status, self._runs[number])
 
@@ -214,8 +225,10 @@ class Simulators:
     def __getitem__(self, name: str | Sequence[str]) -> Any:
         """A signal of all runs at their present times, (count,), or several, (count, names).
 
-        A run that cannot go on has NaN. KeyError with near names where there is none.
+        A run that cannot go on has NaN, and "" as the state of a contact. KeyError with near names where there is none.
         """
+        if not isinstance(name, str) and not len(name):
+            return np.empty((self._count, 0))
         self._refresh()
         now = ManyReadings(self._rows, self.failed, self._own, self._options)
         return now[name] if isinstance(name, str) else np.stack([now[one] for one in name], axis=1)
@@ -271,8 +284,18 @@ class Simulators:
 
     @explained("sims.restore")
     def restore(self, state: State, which: ArrayLike | None = None) -> None:
-        """Put all runs, or those of `which`, to a state of the same System."""
-        for number in self._chosen("sims.restore", which).tolist():
+        """Put all runs, or those of `which`, to a state of their own System.
+
+        StateError where it is that of another one; all of them stay where they are then.
+        """
+        if not isinstance(state, State):
+            raise UseError(
+                "sims.restore", [f"state is {quote(state)}: give what sims.save(number) or sim.save() returned"]
+            )
+        chosen = self._chosen("sims.restore", which).tolist()
+        for number in chosen:
+            state.fits(self._own[number])
+        for number in chosen:
             put(self._runs[number], self._own[number], state)
             self._here(number)
 

@@ -26,7 +26,7 @@ def systems_of(system: System, vary: object, count: int) -> list[System]:
         values = given.tolist() if isinstance(given, np.ndarray) else given
         if not isinstance(values, list | tuple) or len(values) != count:
             length = f"{len(values)} values" if isinstance(values, list | tuple) else quote(given)
-            problems.append(f"vary of {quote(name)} has {length}: give {count}, one for each run")
+            problems.append(f"vary of {quote(name)} has {length}: give {count} values, one for each run")
         else:
             columns[name] = list(values)
     if problems:
