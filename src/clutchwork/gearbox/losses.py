@@ -10,6 +10,7 @@ from clutchwork.base.classes import dataclass
 from clutchwork.base.errors import UseError, near
 from clutchwork.base.plural import columns
 from clutchwork.base.quote import quote
+from clutchwork.declare.calls import explain
 from clutchwork.gearbox.balance import lossy_balance
 from clutchwork.gearbox.motion import speeds as free_speeds
 
@@ -288,3 +289,7 @@ def _lost(now: GearState, oil: Oil, parts: Sequence[LossPart], at: tuple[float, 
         else:
             total += abs(turning) * part.torque(turning, torque, viscosity)
     return total
+
+
+for _part in (Oil, *KINDS):
+    explain(_part)
