@@ -11,6 +11,7 @@ import pytest
 import yaml
 from PIL import Image
 
+import clutchwork as cw
 from support import cases
 from support.pages import page, plain, table
 from support.project import ROOT
@@ -92,3 +93,7 @@ def test_how_to_cite_it() -> None:
     # the version stands in the package alone
     assert "version" not in cited
     assert "CITATION.cff" in README
+
+
+def test_it_counts_the_gearboxes_of_the_catalogue() -> None:
+    assert f"{len(cw.catalogue())} of them in the catalogue" in README
