@@ -19,7 +19,7 @@ from http.server import SimpleHTTPRequestHandler, ThreadingHTTPServer
 from pathlib import Path
 
 ROOT = Path(__file__).resolve().parent.parent
-LINE = re.compile(r"^    pip (install \S+)(?: +#.*)?$", re.MULTILINE)
+LINE = re.compile(r"^    pip (install \S+)$", re.MULTILINE)
 
 
 class Quiet(SimpleHTTPRequestHandler):
