@@ -4,7 +4,8 @@
 #   make check    format, lint, types, import contracts, spelling
 #   make bench    speed against peers; ARGS="--write" puts the table into docs/benchmarks.md
 #   make wasm     the core as WebAssembly: src/clutchwork/page/static/core.wasm
-#   make wheel    a wheel for other machines like this one, tried without a compiler: dist/
+#   make wheel    sdist, and a wheel for machines like this one, tried without a compiler: dist/
+#   make release-check    the same, and what has to be true before a tag: CONTRIBUTING.md
 #   make page     the script of pages that compute (needs node): src/clutchwork/page/static/
 #   make docs     the documentation: build/docs/index.html
 #   make pictures the pictures of the guides that something has changed for: docs/pictures/
@@ -40,11 +41,11 @@ CPP_FILES = $(shell git ls-files 'cpp/*.hpp' 'cpp/*.cpp' 'cpp/*.h' 'interfaces/*
 
 # each recipe takes JOBS cores itself, and all install into one environment
 .NOTPARALLEL:
-.PHONY: help setup demo test test-rest test-all test-cpp test-python page test-page check-page check format bench wasm wheel docs picture pictures clean
+.PHONY: help setup demo test test-rest test-all test-cpp test-python page test-page check-page check format bench wasm wheel release-check docs picture pictures clean
 .DELETE_ON_ERROR:
 
 help:
-	@sed -n '2,11p' Makefile | cut -c 3-
+	@sed -n '2,13p' Makefile | cut -c 3-
 
 # ---------------------------------------------------------------- environment
 
@@ -165,24 +166,25 @@ $(WASM): $(STAMPS)/wasm $(CORE_SOURCES) tools/build_wasm.py
 	@echo "compiling the core to WebAssembly (a minute or so)"
 	@JOBS=$(JOBS) $(BIN)/python tools/build_wasm.py
 
-# repaired to a manylinux tag on Linux, then tried in an environment of its own
+# sdist, the wheel that it makes, repaired to a manylinux tag on Linux, and what a user does with it
 # what it holds of pages needs npm here
 wheel: $(STAMPS)/wheel $(WASM) build/page/stamp
-	@rm -rf build/wheel && mkdir -p build/wheel dist
-	@echo "building the wheel"
-	@$(COMPILER) $(PIP) wheel --no-build-isolation --no-deps --config-settings=build-dir=build/wheel/cmake \
-		$(SETTING)NATIVE=OFF $(SETTING)DERIVATIVES=ON --wheel-dir build/wheel/raw .
+	@rm -rf build/wheel && mkdir -p build/wheel/good dist
+	@echo "packing the sdist, and building a wheel from it"
+	@$(BIN)/python -c 'from scikit_build_core.build import build_sdist; build_sdist("build/wheel/good")' >build/wheel/sdist.log
+	@$(COMPILER) $(PIP) wheel --no-build-isolation --no-deps --config-settings=build-dir=$(CURDIR)/build/wheel/cmake \
+		$(SETTING)NATIVE=OFF $(SETTING)DERIVATIVES=ON --wheel-dir build/wheel/raw build/wheel/good/*.tar.gz
 	@if [ "$$(uname)" = Linux ]; then \
 		PATH="$(CURDIR)/$(BIN):$$PATH" $(BIN)/python -m auditwheel repair --wheel-dir build/wheel/good build/wheel/raw/*.whl; \
-	else mv build/wheel/raw build/wheel/good; fi
-	@echo "trying it in an environment of its own"
-	@$(PYTHON) -m venv build/wheel/venv
-	@build/wheel/venv/bin/python -m pip --disable-pip-version-check --quiet download --only-binary :all: \
-		--dest build/wheel/index "$$(echo build/wheel/good/*.whl)[draw]"
-	@build/wheel/venv/bin/python -m pip --disable-pip-version-check --quiet \
-		install --no-index --find-links build/wheel/index 'clutchwork[draw]'
-	@build/wheel/venv/bin/python tools/try_installed.py
-	@cp build/wheel/good/*.whl dist && cd build/wheel/good && for made in *.whl; do echo "dist/$$made"; done
+	else mv build/wheel/raw/*.whl build/wheel/good; fi
+	@echo "installing it from an index of this machine, as README.md says"
+	@$(PYTHON) tools/try_release.py build/wheel/good/*.whl
+	@cp build/wheel/good/* dist && cd build/wheel/good && for made in *; do echo "dist/$$made"; done
+
+# before a tag: the files of a release, what PyPI asks of them, and what pages say of the release
+release-check: wheel $(STAMPS)/test
+	@$(BIN)/python -m twine check --strict build/wheel/good/*
+	@$(PYTEST) tests/docs/test_release.py tests/docs/test_changelog.py tests/docs/test_readme.py
 
 # those of the guides that are missing or stale; ARGS=--all draws all of them
 pictures: $(STAMPS)/package $(STAMPS)/docs

@@ -15,8 +15,8 @@ from typing import Any
 ROOT = Path(__file__).resolve().parents[1]
 GUIDE = ROOT / "docs" / "guide" / "calibrate.md"
 COLUMNS = (
-    "shift", "jerk before", "least, nominal linings", "of other starts", "least, worst of the samples", "limits",
-    "hold in", "worst of these",
+    "shift", "jerk before", "optimum, nominal linings", "from other starts", "optimum, worst sample", "limits",
+    "met by", "worst of these",
 )  # fmt: skip
 HEAD = f"| {' | '.join(COLUMNS)} |\n{'|---' * len(COLUMNS)}|\n"
 LIMITS = {

@@ -52,7 +52,7 @@ def _page(kind: str, cls: Any) -> Iterator[str]:
     yield from table(cls)
     yield from element_results.section(cls, example)
     if _has_linings(cls):
-        yield _shared("_linings")
+        yield element_programs.words("_linings")
 
 
 def _words(kind: str) -> tuple[str, str, str]:
@@ -65,7 +65,11 @@ def _words(kind: str) -> tuple[str, str, str]:
 
 def _gain(cls: Any) -> str:
     """How the gain follows from the geometry, where it is a field."""
-    return _shared("_gain") if any(item.name == "gain" and spec.unit == "m3" for item, spec in specs(cls)) else ""
+    return (
+        element_programs.words("_gain")
+        if any(item.name == "gain" and spec.unit == "m3" for item, spec in specs(cls))
+        else ""
+    )
 
 
 def _has_linings(cls: Any) -> bool:
@@ -74,7 +78,3 @@ def _has_linings(cls: Any) -> bool:
     return any(spec.what == "law" for _, spec in found) and not any(
         spec.what == "param" and spec.unit == "N m" for _, spec in found
     )
-
-
-def _shared(name: str) -> str:
-    return (element_programs.WORDS / f"{name}.md").read_text(encoding="utf-8")

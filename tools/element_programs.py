@@ -24,10 +24,10 @@ NODES = {
 }
 
 
-def words(kind: str) -> str:
-    """What is written by hand about an element, empty when nothing is."""
-    path = WORDS / f"{kind}.md"
-    return path.read_text(encoding="utf-8") if path.exists() else ""
+def words(name: str) -> str:
+    """What is written by hand about an element, empty when nothing is; its page is one folder lower."""
+    path = WORDS / f"{name}.md"
+    return path.read_text(encoding="utf-8").replace("](../", "](../../") if path.exists() else ""
 
 
 def program(cls: Any) -> str:

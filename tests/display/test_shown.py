@@ -243,9 +243,9 @@ except ImportError as error:
 def test_without_packages_there_are_words() -> None:
     done = subprocess.run([sys.executable, "-c", WITHOUT], capture_output=True, text=True, check=False)
     assert done.stdout.splitlines() == [
-        "a picture needs matplotlib: pip install 'clutchwork[draw]'",
-        "explore needs plotly: pip install 'clutchwork[interactive]'",
-        "progress=True needs tqdm: pip install 'clutchwork[notebook]'",
+        'a picture needs matplotlib: pip install "clutchwork[draw]"',
+        'explore needs plotly: pip install "clutchwork[interactive]"',
+        'progress=True needs tqdm: pip install "clutchwork[notebook]"',
     ], done.stderr
 
 

@@ -20,6 +20,9 @@ import live
 
 DOCS = ROOT / "docs"
 PAGES = committed.pages()
+FOLDERS = ("decisions", "examples", "benchmarks", "interfaces")
+OTHERS = [ROOT / name for name in ("README.md", "CONTRIBUTING.md", "CHANGELOG.md")]
+OTHERS += [path for name in FOLDERS for path in (ROOT / name).rglob("*.md") if "node_modules" not in path.parts]
 # words of the site alone, which a forge shows as they are: directives, roles, labels, attributes
 OWN = re.compile(
     r"(?m)^ *(?:`{3,}|~{3,}|:{3,}) *\{|\{[\w:-]+\}`|^\([\w-]+\)=$|^\{[.#][^}]*\}$|\)\{[^}]*\}|^%|<iframe|^\+\+\+$"
@@ -41,9 +44,16 @@ def test_a_page_has_nothing_that_only_the_site_knows(path: Path) -> None:
     assert OWN.findall(prose(path)) == []
 
 
-@pytest.mark.parametrize("path", [path for path in PAGES if path.parent.name != "elements"], ids=named)
-def test_no_page_links_to_what_a_build_makes(path: Path) -> None:
-    links = re.findall(r"\]\(([^)\s#]+)", path.read_text(encoding="utf-8"))
+@pytest.mark.parametrize("path", PAGES, ids=named)
+def test_no_line_of_an_equation_begins_a_list_or_a_heading(path: Path) -> None:
+    # a forge takes "- x" for an item and "=" below a line for a heading before it looks for formulas
+    equations = re.findall(r"(?ms)^\$\$$(.*?)^\$\$", path.read_text(encoding="utf-8"))
+    assert re.findall(r"(?m)^ *(?:[-+*] .*|[-=]+$|\d+[.)] .*|[>#].*)", "".join(equations)) == []
+
+
+@pytest.mark.parametrize("path", [*PAGES, *OTHERS], ids=lambda path: path.relative_to(ROOT).as_posix())
+def test_no_page_links_to_nothing_or_to_what_a_build_makes(path: Path) -> None:
+    links = re.findall(r"\]\(([^)\s#]+)", prose(path))
     local = [(path.parent / link).resolve() for link in links if "://" not in link]
     assert [str(link) for link in local if not link.exists() or link.is_relative_to(DOCS / "reference")] == []
 

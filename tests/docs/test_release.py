@@ -11,11 +11,13 @@ from typing import Any
 import pytest
 import yaml
 
+import clutchwork as cw
 from support.pages import plain
 from support.project import ROOT
 
 sys.path.append(str(ROOT / "tools"))
 import try_installed
+import try_release
 
 PROJECT = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))
 WHEELS = PROJECT["tool"]["cibuildwheel"]
@@ -54,12 +56,31 @@ def test_every_wheel_and_the_sdist_are_tried(jobs: dict[str, Any]) -> None:
     assert command == ["python", "{project}/tools/try_installed.py"]
     assert WHEELS["test-extras"] == ["draw"]
     assert "tools/try_installed.py" in str(jobs["sdist"])
-    makefile = (ROOT / "Makefile").read_text(encoding="utf-8")
-    assert "tools/try_installed.py" in makefile
-    # by name, as the README says
-    assert "pip install --find-links dist 'clutchwork[draw]'" in README
     assert "[draw]" in str(jobs["sdist"])
-    assert re.search(r"install --no-index --find-links \S+ 'clutchwork\[draw\]'", makefile)
+    makefile = (ROOT / "Makefile").read_text(encoding="utf-8")
+    # by name from an index, with the line of the README, and the same programs then
+    assert "tools/try_release.py build/wheel/good/*.whl" in makefile
+    assert try_release.install_line(README) == ["install", "clutchwork[draw]"]
+    assert 'pip install --find-links dist "clutchwork[draw]"' in README
+    with pytest.raises(SystemExit, match="no line"):
+        try_release.install_line("# clutchwork")
+
+
+def test_the_version_stands_in_one_place() -> None:
+    packed = [ROOT / name for name in ("pyproject.toml", "CMakeLists.txt", "README.md", "Makefile")]
+    packed += [*(ROOT / "src").rglob("*.py"), *(ROOT / "interfaces").glob("*/package.json")]
+    version = f'"{cw.__version__}"'
+    assert [path.name for path in packed if version in path.read_text(encoding="utf-8")] == ["__init__.py"]
+
+
+def test_files_are_laid_out_as_an_index(tmp_path: Path) -> None:
+    (tmp_path / "files").mkdir()
+    for name in ("clutchwork-0.1.0-cp311-cp311-linux_x86_64.whl", "python_dateutil-2.9.0-py2.py3-none-any.whl"):
+        (tmp_path / "files" / name).write_bytes(b"")
+    try_release.index(tmp_path / "files", tmp_path / "simple")
+    assert sorted(path.name for path in (tmp_path / "simple").iterdir()) == ["clutchwork", "python-dateutil"]
+    page = (tmp_path / "simple" / "python-dateutil" / "index.html").read_text("utf-8")
+    assert '<a href="python_dateutil-2.9.0-py2.py3-none-any.whl">' in page
 
 
 def test_only_a_tag_whose_files_are_all_built_is_published(jobs: dict[str, Any]) -> None:

@@ -69,7 +69,7 @@ def test_the_program_in_the_readme(elsewhere: Path) -> None:
     run = run_blocks(page)["run"]
     assert [(event.element, event.after) for event in run.events] == [("box.C", "backward"), ("box.D", "locked")]
     first, last = (event.time for event in run.events)
-    assert f"C lets go at {first:.3f} s and D locks at {last:.3f} s" in page.read_text(encoding="utf-8")
+    assert f"C breaks away at {first:.3f} s and D locks at {last:.3f} s" in page.read_text(encoding="utf-8")
     # fourth gear
     ratio = run["turbine.speed"][-1] / run["wheels.speed"][-1]
     assert ratio == pytest.approx(cw.Gearbox.load("zf-8hp70").ratios["4"], rel=1e-9)

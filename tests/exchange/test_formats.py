@@ -307,5 +307,5 @@ def test_a_missing_package_is_named(
     import sys
 
     monkeypatch.setitem(sys.modules, module, None)
-    with pytest.raises(ImportError, match=r"pip install 'clutchwork\[exchange\]'"):
+    with pytest.raises(ImportError, match=r'pip install "clutchwork\[exchange\]"'):
         run.write(tmp_path / f"x{ending}")

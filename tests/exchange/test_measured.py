@@ -217,7 +217,7 @@ def test_mat_of_version_7_3(tmp_path: Path, monkeypatch: Any) -> None:
 
     monkeypatch.setitem(sys.modules, "h5py", None)
     (problem,) = cw.Column(str(path), "p").problems()
-    assert "a MAT file of version 7.3 needs h5py: pip install 'clutchwork[exchange]'" in problem[1]
+    assert 'a MAT file of version 7.3 needs h5py: pip install "clutchwork[exchange]"' in problem[1]
 
 
 # ------------------------------------------------------------------------------------------------- NetCDF and the rest
@@ -283,7 +283,7 @@ def test_a_missing_package_is_a_problem_of_the_model(recorded: Path, monkeypatch
 
     monkeypatch.setitem(sys.modules, "asammdf", None)
     (problem,) = cw.Column(str(recorded), "EngSpd").problems()
-    assert "an MDF file needs asammdf: pip install 'clutchwork[exchange]'" in problem[1]
+    assert 'an MDF file needs asammdf: pip install "clutchwork[exchange]"' in problem[1]
 
 
 # ------------------------------------------------------------------------------------------------- semicolons, and fits

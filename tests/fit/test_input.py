@@ -146,7 +146,7 @@ def test_nothing_heavy_is_loaded_before_a_fit() -> None:
 
 def test_without_scipy_it_says_what_to_install(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setitem(sys.modules, "scipy.optimize", None)
-    with pytest.raises(ImportError, match=r"pip install 'clutchwork\[fit\]'"):
+    with pytest.raises(ImportError, match=r'pip install "clutchwork\[fit\]"'):
         fit_law(LAW, **good())
 
 

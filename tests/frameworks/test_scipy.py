@@ -16,7 +16,7 @@ F = two_discs()
 @pytest.mark.parametrize(("call", "package"), [("to_jax", "jax"), ("to_torch", "torch")])
 def test_a_missing_framework_comes_with_its_remedy(call, package, monkeypatch):
     monkeypatch.setitem(sys.modules, package, None)
-    with pytest.raises(ImportError, match=rf"cw\.{call} needs {package}: pip install 'clutchwork\[{package}\]'"):
+    with pytest.raises(ImportError, match=rf'cw\.{call} needs {package}: pip install "clutchwork\[{package}\]"'):
         getattr(cw, call)(F)
 
 

@@ -72,7 +72,7 @@ def test_without_shtab_it_says_what_to_install(
 ) -> None:
     monkeypatch.setitem(__import__("sys").modules, "shtab", None)
     assert main(["completion", "bash"]) == 4
-    assert "completion needs shtab: pip install 'clutchwork[completion]'" in capsys.readouterr().err
+    assert 'completion needs shtab: pip install "clutchwork[completion]"' in capsys.readouterr().err
 
 
 def test_an_old_shtab_that_does_not_know_the_shell(

@@ -207,7 +207,7 @@ def test_a_reward_that_is_not_a_number():
 
 def test_without_gymnasium(monkeypatch):
     monkeypatch.setitem(sys.modules, "gymnasium", None)
-    with pytest.raises(ImportError, match=r"an environment needs gymnasium: pip install 'clutchwork\[learn\]'"):
+    with pytest.raises(ImportError, match=r'an environment needs gymnasium: pip install "clutchwork\[learn\]"'):
         environment()
 
 

@@ -243,9 +243,9 @@ def test_the_licence_of_what_is_inside_is_there() -> None:
 @pytest.mark.usefixtures("built")
 def test_a_page_without_a_schematic_says_why(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     def missing(*_: Any) -> None:
-        raise ImportError("pip install 'clutchwork[draw]'")
+        raise ImportError('pip install "clutchwork[draw]"')
 
     monkeypatch.setattr("clutchwork.page.data.live", missing)
-    with pytest.warns(UserWarning, match=r"the page has no schematic: pip install 'clutchwork\[draw\]'"):
+    with pytest.warns(UserWarning, match=r'the page has no schematic: pip install "clutchwork\[draw\]"'):
         path = braked().simulate(1.0).page(tmp_path / "plain.html")
     assert content(path.read_text(encoding="utf-8"))["schematic"] is None

@@ -309,9 +309,9 @@ def test_packages_that_are_missing(monkeypatch, tmp_path):
     found = cw.sweep(discs(), 3.0, vary={"c1.gain": [1.0]}, outputs="load.speed")
     for name in ("tqdm.auto", "pyarrow"):
         monkeypatch.setitem(sys.modules, name, None)
-    with pytest.raises(ImportError, match=r"pip install 'clutchwork\[exchange\]'"):
+    with pytest.raises(ImportError, match=r'pip install "clutchwork\[exchange\]"'):
         found.to_parquet(tmp_path / "x.parquet")
-    with pytest.raises(ImportError, match=r"progress=True needs tqdm: pip install 'clutchwork\[notebook\]'"):
+    with pytest.raises(ImportError, match=r'progress=True needs tqdm: pip install "clutchwork\[notebook\]"'):
         cw.sweep(discs(), 3.0, vary={"c1.gain": [1.0]}, outputs="load.speed", progress=True)
 
 

@@ -16,7 +16,7 @@ def need(module: str, extra: str, use: str = "this") -> Any:
         return import_module(module)
     except ImportError as error:
         package = module.partition(".")[0]
-        raise ImportError(f"{use} needs {package}: pip install 'clutchwork[{extra}]'") from error
+        raise ImportError(f'{use} needs {package}: pip install "clutchwork[{extra}]"') from error
 
 
 def program() -> str:

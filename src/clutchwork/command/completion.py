@@ -26,7 +26,7 @@ def add_commands(commands: Any) -> None:
         completion_command,
         "let a shell complete commands, options and files",
         about="It is made from the commands as they are now: make it again after an upgrade. Needs shtab: pip install "
-        "'clutchwork[completion]'.",
+        '"clutchwork[completion]".',
         examples=tuple((line, shell) for shell, line in SHELLS.items()),
     )
     completion.add_argument("shell", choices=list(SHELLS), help="the shell that is to read the script")

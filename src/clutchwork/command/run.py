@@ -267,7 +267,7 @@ def demo_command(asked: argparse.Namespace) -> int:
     asked.plot = out / "shift.png" if drawn else None
     code = run_command(asked)
     if not drawn:
-        sys.stderr.write("clutchwork: no picture, which needs matplotlib: pip install 'clutchwork[draw]'\n")
+        sys.stderr.write('clutchwork: no picture, which needs matplotlib: pip install "clutchwork[draw]"\n')
     return code
 
 
