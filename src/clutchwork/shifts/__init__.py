@@ -8,7 +8,6 @@ from clutchwork.shifts.controller import ShiftController
 from clutchwork.shifts.detect import Shift, shifts_of
 from clutchwork.shifts.diagnosis import diagnose
 from clutchwork.shifts.drive import Sensed, drive
-from clutchwork.shifts.dual_clutch import DualClutch, DualClutchSettings, DualClutchShift, drive_dual_clutch
 from clutchwork.shifts.exchange import Exchange, exchanges
 from clutchwork.shifts.fault_results import Fault, FaultResult, FaultTable
 from clutchwork.shifts.faults import fault_table, single_faults
@@ -23,13 +22,11 @@ from clutchwork.shifts.schedule import ShiftSchedule
 from clutchwork.shifts.settings import ShiftSettings
 from clutchwork.shifts.shift_map import Inhibit, ShiftMap
 from clutchwork.shifts.survey import Survey, Surveyed, neighbours, survey
-from clutchwork.shifts.torque_sources import TorqueSource
+from clutchwork.shifts.torque_sources import EngineSource, TorqueSource
 
 __all__ = [
-    "DualClutch",
-    "DualClutchSettings",
-    "DualClutchShift",
     "ElementActuator",
+    "EngineSource",
     "Exchange",
     "Fault",
     "FaultResult",
@@ -53,7 +50,6 @@ __all__ = [
     "TorqueSource",
     "diagnose",
     "drive",
-    "drive_dual_clutch",
     "exchanges",
     "fault_table",
     "fill_test",

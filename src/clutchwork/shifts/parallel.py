@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from clutchwork.shifts.handover import Array, allocation
-from clutchwork.shifts.profile import Trend
+from clutchwork.shifts.profile import Trend, share_of
 from clutchwork.shifts.record import Finding
 
 if TYPE_CHECKING:
@@ -77,6 +77,10 @@ class ParallelSequence:
     def __post_init__(self) -> None:
         self._held = {name: self.do.commands.get(name, 0.0) for name in self.one.elements}
 
+    def torque_change(self, _: Measured) -> float:
+        """What is asked for at the input on top of the driver's torque [N m]."""
+        return (self.torque_factor - 1.0) * self.loaded
+
     def step(self, time: float, period: float, now: Measured) -> str:
         """Do what the state asks for; the state that begins, if one does. "done": the exchange is made."""
         self._now = time
@@ -102,7 +106,7 @@ class ParallelSequence:
         if self.over:
             # nothing holds the input meanwhile
             return "inertia"
-        share = 1.0 if self.filled else _share(passed, self._fill_time)
+        share = 1.0 if self.filled else share_of(passed, self._fill_time)
         self._watch_fill(now)
         for name in one.on:
             do.carry(name, 0.0, with_)
@@ -129,7 +133,7 @@ class ParallelSequence:
                 do.carry(name, with_.margin**2 * abs(one.off_torques[name] * now.input_torque), with_)
             if passed < with_.longest:
                 return ""
-        share, taken = _share(passed - self.late, with_.torque_time), self._still(now)
+        share, taken = share_of(passed - self.late, with_.torque_time), self._still(now)
         for name in one.on:
             do.carry(name, share * taken[name], with_)
         for name in one.off:
@@ -164,7 +168,7 @@ class ParallelSequence:
         for name in self.ahead:
             do.carry(name, 0.0, with_)
         # a shift that goes over into this one leaves torques that would jump
-        share = _share(passed, with_.end_time) if self.over else 1.0
+        share = share_of(passed, with_.end_time) if self.over else 1.0
         for name, torque in self._needed(period, now).items():
             # what opens stays filled meanwhile: it may have to hold the input again
             do.carry(name, torque, with_)
@@ -182,7 +186,7 @@ class ParallelSequence:
         """At equal speeds: those that close hold what they will carry, the others go down to nothing."""
         one, with_, do = self.one, self.with_, self.do
         let_go = not any(self._held.get(name, 0.0) for name in one.off)
-        share = 1.0 if let_go else _share(passed, 0.5 * with_.torque_time)
+        share = 1.0 if let_go else share_of(passed, 0.5 * with_.torque_time)
         for name in one.on:
             least = do.pressure(name, with_.margin * abs(one.on_torques[name] * now.input_torque), with_)
             # without slip it takes what the others leave, and not all that it could
@@ -336,7 +340,3 @@ class ParallelSequence:
     def _is_synchronous(self, now: Measured) -> bool:
         y = self._y(now)
         return bool(np.all((np.abs(y) < self.with_.sync_slip) | (y * self._start <= 0.0)))
-
-
-def _share(passed: float, time: float) -> float:
-    return min(1.0, passed / max(time, 1e-9))

@@ -2,11 +2,10 @@
 
 from __future__ import annotations
 
+from bisect import bisect_right
 from collections.abc import Mapping, Sequence
 from itertools import pairwise
 from typing import TYPE_CHECKING
-
-import numpy as np
 
 from clutchwork.base.classes import dataclass
 from clutchwork.base.errors import ModelError, Problem
@@ -65,11 +64,11 @@ class ShiftSchedule:
 
     def speed_up(self, throttle: float) -> float:
         """Speed of the input above which it shifts up [rad/s]."""
-        return _at(self.up, throttle)
+        return at(self.up, throttle)
 
     def speed_down(self, throttle: float) -> float:
         """Speed of the input below which it shifts down [rad/s]."""
-        return _at(self.down, throttle)
+        return at(self.down, throttle)
 
     def gear(self, current: str, output_speed: float, throttle: float) -> str:
         """The gear to drive in.
@@ -99,5 +98,14 @@ class ShiftSchedule:
         return found
 
 
-def _at(line: Line, x: float) -> float:
-    return float(np.interp(x, [point[0] for point in line], [point[1] for point in line]))
+def at(line: Line, x: float) -> float:
+    """A line of points, linear between them and held outside."""
+    place = bisect_right(line, x, key=_first)
+    if place == 0 or place == len(line):
+        return float(line[max(place - 1, 0)][1])
+    (low, first), (high, last) = line[place - 1], line[place]
+    return float(first + (x - low) / (high - low) * (last - first))
+
+
+def _first(point: tuple[float, float]) -> float:
+    return point[0]

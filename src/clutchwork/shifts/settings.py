@@ -26,6 +26,7 @@ class ShiftSettings:
         integral: of the same [1/s2]
         sync_slip: below which an element is taken as synchronous [rad/s]
         dog_slip: slip below which a dog clutch is commanded to engage, below the one at which its teeth mesh [rad/s]
+        cone: share of the force of a synchroniser with which a gear that waits is brought to speed, 0 to 1
         blip: most throttle that the engine is asked for where nothing else can bring the input to the speed of a dog
         clutch, or unload one that opens, 0 to 1
         adaptation: share of what a shift showed of the filling that is learnt for the next one, 0: nothing is
@@ -52,6 +53,7 @@ class ShiftSettings:
     integral: float = 100.0
     sync_slip: float = 1.0
     dog_slip: float = 4.0
+    cone: float = 0.4
     blip: float = 0.4
     adaptation: float = 1.0
     longest: float = 2.5

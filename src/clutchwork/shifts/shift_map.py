@@ -6,28 +6,26 @@ import csv
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import field
 from itertools import pairwise
-from math import inf, isfinite
+from math import inf, isfinite, pi
 from pathlib import Path
 from typing import TYPE_CHECKING
-
-import numpy as np
 
 from clutchwork.base.classes import dataclass
 from clutchwork.base.errors import ModelError, Problem, UseError
 from clutchwork.base.frozen import frozen
 from clutchwork.base.paths import path_of
 from clutchwork.base.quote import listed, quote
+from clutchwork.shifts.schedule import Line, at
 
 if TYPE_CHECKING:
     from clutchwork.gearbox.gearbox import Gearbox
     from clutchwork.shifts.record import Measured
 
 Pair = tuple[str, str]
-Line = Sequence[tuple[float, float]]
 # what lines are speeds of
 INPUT, OUTPUT, VEHICLE = "input", "output", "vehicle"
 # SI per unit of a speed in a table
-UNITS = {"rad/s": 1.0, "rpm": np.pi / 30.0, "1/min": np.pi / 30.0, "m/s": 1.0, "km/h": 1.0 / 3.6, "mph": 0.44704}
+UNITS = {"rad/s": 1.0, "rpm": pi / 30.0, "1/min": pi / 30.0, "m/s": 1.0, "km/h": 1.0 / 3.6, "mph": 0.44704}
 LINEAR = ("m/s", "km/h", "mph")
 FITS = 'give rad/s or rpm for "input" and "output", m/s, km/h or mph for "vehicle"'
 # least gap between the lines up and down, as a share of the speed up
@@ -126,8 +124,7 @@ class ShiftMap:
         if pedal >= self.kickdown and pair in self.kickdown_speeds:
             value = self.kickdown_speeds[pair]
         else:
-            points = self.lines[pair]
-            value = float(np.interp(pedal, [point[0] for point in points], [point[1] for point in points]))
+            value = at(self.lines[pair], pedal)
         return value / {INPUT: self.ratios[pair[0]], OUTPUT: 1.0, VEHICLE: self.per_output or 1.0}[self.of]
 
     def _step(self, order: Sequence[str], place: int, now: Measured) -> int:
