@@ -201,7 +201,7 @@ def test_an_engine_without_spare_torque_leaves_it_to_the_clutch() -> None:
     run = cw.shifts.drive(sim, control, 2.5, throttle=lambda _: 0.0, sources=dragging)
     (record,) = control.records
     assert record.reached
-    times = dict((state, time) for time, state in record.phases)
+    times = {state: time for time, state in record.phases}
     slowing = (run.time > times["inertia"] + 0.05) & (run.time < times["sync"] - 0.05)
     assert np.all(np.abs(run["gearbox.K1.torque"][slowing]) < 25.0)
     # all that the engine has, and the car as much less than nothing

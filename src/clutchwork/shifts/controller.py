@@ -53,8 +53,8 @@ class ShiftController:
     shift goes on is followed at once, from the speeds that are; where dog clutches or freewheels take part, or statics
     do not say how, the shift is finished before. One that does not get to its new speed within `longest` goes back.
 
-    In a dual-clutch gearbox the next gear waits on the free shaft, two gears of one shaft are reached through one of the
-    other, and the engine changes its speed by its own torque, which `torque_change` has.
+    In a dual-clutch gearbox the next gear waits on the free shaft, two gears of one shaft are reached through one of
+    the other, and the engine changes its speed by its own torque, which `torque_change` has.
 
     Without a converter (`launch_speed` of the settings) it lets the input go before the engine stalls, and drives off
     again where the driver wants to.

@@ -109,8 +109,9 @@ class EngineLedSequence:
         through = self._through(ratio, asked)
         self._carry(carries, through + copysign(1.0, asked) * (self._change - more))
         self._carry(other, 0.0)
-        # the clutch that comes must not slip against the torque
+        # the clutch that comes must not slip against the torque; what it is filled with may hold it before
         near = abs(slip - beyond) < (1.0 if self._first else 0.5) * with_.sync_slip
+        near = near or (passed >= time + CLOSING and abs(slip) < with_.sync_slip)
         return ("end" if self._first else "sync") if passed >= time and near else ""
 
     def sync(self, passed: float, _: float, now: Measured) -> str:

@@ -35,6 +35,8 @@ JOLT = 0.25
 USUAL = 0.015
 # share of the inertia phase in which the torque of the engine comes back
 COMES_BACK = 0.4
+# torque that a downshift needs [N m] from which on the engine is asked for all of its throttle
+NEEDED = 20.0
 # torque of an element that counts as none, as a share of that of the input
 NOTHING = 1e-3
 
@@ -56,7 +58,8 @@ class ParallelSequence:
     state: str = "fill"
     torque_factor: float = 1.0  # what the engine is asked for
     loaded: float = 0.0  # N m, at the input where the inertia phase began
-    blip: float = 0.0  # none: no dog clutch waits for the engine
+    blip: float = 0.0  # throttle on top of that of the driver
+    lacking: float = 0.0  # N m, at the input, that the engine is asked for where elements would pull it up too hard
     late: float = 0.0  # s, for which those that close were waited for in the torque phase
     jolt: float = 0.0  # rad/s, largest second difference of the speed of the output while they were filled
     left: float = 0.0  # rad/s, slip with which it was closed
@@ -79,7 +82,7 @@ class ParallelSequence:
 
     def torque_change(self, _: Measured) -> float:
         """What is asked for at the input on top of the driver's torque [N m]."""
-        return (self.torque_factor - 1.0) * self.loaded
+        return (self.torque_factor - 1.0) * self.loaded + self.lacking
 
     def step(self, time: float, period: float, now: Measured) -> str:
         """Do what the state asks for; the state that begins, if one does. "done": the exchange is made."""
@@ -155,10 +158,10 @@ class ParallelSequence:
         """All slips along their profiles at once, by those elements that pull the right way: equations (15), (16)."""
         one, with_, do = self.one, self.with_, self.do
         if self._is_synchronous(now):
-            self.torque_factor = 1.0
+            self.torque_factor, self.lacking, self.blip = 1.0, 0.0, 0.0
             return "sync"
         if passed > with_.longest:
-            self.torque_factor = 1.0
+            self.torque_factor, self.lacking, self.blip = 1.0, 0.0, 0.0
             lacks = float(np.linalg.norm(self._y(now)))
             self.left, self.instants["closed"] = lacks, self._now
             rises = float(one.input @ self._start) < 0.0
@@ -179,7 +182,7 @@ class ParallelSequence:
             left = 1.0 - min(1.0, self._passed / self._time)
             self.torque_factor = 1.0 - with_.reduction * min(1.0, left / COMES_BACK)
         else:
-            self.torque_factor = 1.0 + with_.increase if now.input_torque <= 0.0 and change > 0.0 else 1.0
+            self.torque_factor = 1.0
         return ""
 
     def sync(self, passed: float, _: float, now: Measured) -> str:
@@ -293,10 +296,12 @@ class ParallelSequence:
         self._output = Trend(now.output_speed)
         change = -float(one.input @ self._start)
         time, longer = max(with_.inertia_time, 1e-9), abs(change) / max(with_.usual_step, 1e-9)
-        if change * now.input_torque > 0.0 and time:
-            # what the torque of the input itself brings there, without a pull of the elements that close
+        # what the torque of the input itself brings there, and a pull of the elements that close up to a limit
+        at_hand = AT_HAND * max(0.0, copysign(now.input_torque, change * now.input_torque))
+        at_hand += with_.pull if change > 0.0 else 0.0
+        if at_hand > 0.0 and change:
             kinetic = float(self._start @ one.inertia @ self._start) / abs(change)
-            longer = max(longer, 1.5 * kinetic / (AT_HAND * abs(now.input_torque)) / time)
+            longer = max(longer, 1.5 * kinetic / at_hand / time)
         self._time = time * min(max(1.0, longer), max(1.0, with_.stretch))
 
     def _needed(self, period: float, now: Measured) -> dict[str, float]:
@@ -318,11 +323,20 @@ class ParallelSequence:
         else:
             # what the plan lacks at its end is made up with its mean rate
             law = rate if x < 1.0 else -self._start / self._time
+        self._ask(float(self._start @ (one.inertia @ law)), now)
         force = one.inertia @ law + one.coupling * self._output.slope - one.input * now.input_torque
         torques, missed = self._taken(force, now)
         if with_.closed_loop and missed <= 1e-6:
             self._integral = self._integral + with_.integral * error * period
         return torques
+
+    def _ask(self, work: float, now: Measured) -> None:
+        """Torque of the engine for a downshift in which elements would pull the input up too hard: equation (22)."""
+        lever = float(self._start @ self.one.input)
+        needed = work / lever if lever < 0.0 else 0.0
+        given = now.input_torque if now.demand is None else now.demand
+        self.lacking = max(0.0, needed - self.with_.pull - given)
+        self.blip = min(self.with_.blip, self.lacking / max(needed, NEEDED))
 
     def _profile(self, x: float) -> tuple[Array, Array]:
         """The slips that are wanted at a share of the time [rad/s], and their rate [rad/s2]: equation (16)."""

@@ -96,7 +96,7 @@ class Profile:
         return self.with_.launch_speed if not self.one.off and now.throttle > self.with_.launch_throttle else -inf
 
     def torque_factor(self, now: Measured) -> float:
-        """Of the engine: less where the input slows down under power, more where it has to be faster without."""
+        """Of the engine: less where the input slows down under power."""
         if self.to_dog and self.slip < 0.0:
             # nothing else brings the input down to a dog clutch; `blip` catches it there
             return 0.0
@@ -104,7 +104,7 @@ class Profile:
             return 1.0
         if now.input_torque > 0.0 and self.slip < 0.0:
             return 1.0 - self.with_.reduction
-        return 1.0 + self.with_.increase if now.input_torque <= 0.0 and self.slip > 0.0 else 1.0
+        return 1.0
 
     def blip(self, period: float, now: Measured) -> float:
         """Throttle on top of that of the driver: no clutch keeps the input at the speed of a dog clutch."""
