@@ -14,6 +14,7 @@ from clutchwork.shifts.faults import fault_table, single_faults
 from clutchwork.shifts.fill_test import fill_test
 from clutchwork.shifts.gears import InGear, gears_of
 from clutchwork.shifts.handover import Handover
+from clutchwork.shifts.hybrid import HybridController, HybridSettings, drive_hybrid
 from clutchwork.shifts.metrics import ShiftQuality, qualities
 from clutchwork.shifts.plant import Plant, plant_of
 from clutchwork.shifts.record import Finding, Measured, ShiftRecord
@@ -33,6 +34,8 @@ __all__ = [
     "FaultTable",
     "Finding",
     "Handover",
+    "HybridController",
+    "HybridSettings",
     "InGear",
     "Inhibit",
     "Measured",
@@ -50,6 +53,7 @@ __all__ = [
     "TorqueSource",
     "diagnose",
     "drive",
+    "drive_hybrid",
     "exchanges",
     "fault_table",
     "fill_test",
