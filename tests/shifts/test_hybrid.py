@@ -124,7 +124,7 @@ def test_mode_shifts_up_and_down() -> None:
 
 
 def test_a_weak_battery_is_kept_within_its_limits() -> None:
-    """5 A out, 2 A in: nothing is asked beyond, where the same drive takes more of a strong one, and the engine helps."""
+    """5 A out, 2 A in: nothing is asked beyond, where the drive takes more of a strong one, and the engine helps."""
     box = cw.Gearbox.load("toyota-p410")
     speeds, most = [], []
     for limits in ({"max_current": 5.0, "max_charging_current": 2.0}, {"max_current": 150.0}):

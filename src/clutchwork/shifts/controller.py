@@ -16,6 +16,7 @@ from clutchwork.shifts.course import ExchangeSequence
 from clutchwork.shifts.engine_led import EngineLedSequence
 from clutchwork.shifts.exchange import Exchange
 from clutchwork.shifts.handover import Handover, handover, is_straight
+from clutchwork.shifts.interrupted import InterruptedSequence
 from clutchwork.shifts.parallel import ParallelSequence
 from clutchwork.shifts.plans import between_halves, plan
 from clutchwork.shifts.plant import Plant
@@ -53,8 +54,9 @@ class ShiftController:
     shift goes on is followed at once, from the speeds that are; where dog clutches or freewheels take part, or statics
     do not say how, the shift is finished before. One that does not get to its new speed within `longest` goes back.
 
-    In a dual-clutch gearbox the next gear waits on the free shaft, two gears of one shaft are reached through one of
-    the other, and the engine changes its speed by its own torque, which `torque_change` has.
+    Between gears of teeth alone, as of an electric axle, the motor turns the input to its new speed without torque at
+    the output. In a dual-clutch gearbox the next gear waits on the free shaft, two gears of one shaft are reached
+    through one of the other, and the engine changes its speed by its own torque, which `torque_change` has.
 
     Without a converter (`launch_speed` of the settings) it lets the input go before the engine stalls, and drives off
     again where the driver wants to.
@@ -93,7 +95,7 @@ class ShiftController:
     def __post_init__(self) -> None:
         self._known(self.gear)
         self._choice = GearChoice(self.schedule, self.settings)
-        self._halves, self._output = Halves.of(self.box), Trend()
+        self._halves, self._output, self._sourced = Halves.of(self.box), Trend(), False
         rivals = self._halves.rivals if self._halves else {}
         self._do = Actuation(self.box, self.plant, self.prefix, rivals, self.settings.cone)
         self._do.only(self.gear, self.settings)
@@ -116,6 +118,7 @@ class ShiftController:
         period = max(0.0, time - self._called)
         self._called = time
         self._output.follow(now.output_speed, period)
+        self._sourced = now.demand is not None
         course = self._course
         if self._choice.stalls(self.gear, course is not None and not course.one.off, period, now):
             self._abandon(time, NEUTRAL, "let go before the engine stalled")
@@ -221,7 +224,9 @@ class ShiftController:
             record.phases.append((time, "mesh"))
             return
         next_on = ahead.on if isinstance(ahead, Exchange) else ""
-        self._course = ExchangeSequence(one, self._with(record), self._do, time, filled, next_on, opens)
+        teeth = self._sourced and self._do.is_dog(one.off) and self._do.is_dog(one.on)
+        kind = InterruptedSequence if teeth else ExchangeSequence
+        self._course = kind(one, self._with(record), self._do, time, filled, next_on, opens)
         record.phases.append((time, "mesh"))
 
     def _handover(self, off: Sequence[str], on: Sequence[str], kept: Sequence[str]) -> Handover | None:

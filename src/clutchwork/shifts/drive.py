@@ -86,7 +86,7 @@ def drive(
     control: ShiftController,
     until: float,
     *,
-    throttle: Callable[[float], float],
+    throttle: Callable[[float], float] | str,
     sensed: Sensed | None = None,
     also: Also | None = None,
     sources: Sequence[Source] = (),
@@ -98,9 +98,10 @@ def drive(
     Use it for shifts on a schedule or by request: `control.records` has them afterwards. It can be called again to go
     on. UseError where nothing says the torque at the input, or a dual-clutch gearbox has no `sources`.
 
-    Parameters: throttle, of the driver over time, 0 to 1; sensed, signals that are read; also, what else is set, such
-    as brakes; sources, motors and engine that give what a shift asks for, the first one first; period, from one call of
-    the controller to the next while it shifts [s]; resting, the same between shifts.
+    Parameters: throttle, of the driver over time, 0 to 1, or a signal such as "driver.throttle"; sensed, signals that
+    are read; also, what else is set, such as brakes; sources, motors and engine that give what a shift asks for, the
+    first one first; period, from one call of the controller to the next while it shifts [s]; resting, the same between
+    shifts.
     """
     share, sensed = TorqueShare(sources), sensed or Sensed()
     if not sources and (control.led or not sensed.torque):
@@ -110,7 +111,8 @@ def drive(
         raise UseError("cw.shifts.drive", [f"{who}: give sources, such as cw.shifts.EngineSource.of(engine)"])
     read, set_, last = _SensorReader(sensed, sim, control, share), dict[str, float](), sim.time
     while sim.time < until - 1e-9:
-        time, pedal = sim.time, float(throttle(sim.time))
+        time = sim.time
+        pedal = float(sim[throttle]) if isinstance(throttle, str) else float(throttle(time))
         wanted = {} if set_ else control.commands
         now = read(pedal)
         wanted |= control.step(time, now)

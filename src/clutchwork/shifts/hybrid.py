@@ -1,4 +1,4 @@
-"""Controller of a power split: engine on its line, machines, battery, synchronous mode shifts. docs/theory/shifts.md."""
+"""Controller of a power split: engine on its line, machines, battery, mode shifts. docs/theory/shifts.md (24), (25)."""
 
 from __future__ import annotations
 
@@ -28,7 +28,8 @@ if TYPE_CHECKING:
 
 # rate at which an element is brought to equal speeds [1/s], within a tenth of that of the calls
 SYNCHRONISE = 10.0
-# output speed below which no ratio is looked at, and machines brake less [rad/s]; share of the ratio between both modes that is hysteresis
+# output speed below which no ratio is looked at, and machines brake less [rad/s]
+# and share of the ratio between two modes that is hysteresis
 SLOW, HYSTERESIS = 5.0, 0.05
 CALL = "cw.shifts.HybridController"
 
@@ -56,8 +57,9 @@ class HybridController:
     """Drives a gearbox with machines: the engine gives the power, the machines hold its speed and drive the output.
 
     Use it for power splits with two machines, of one mode or several. In a split the torques of both machines follow
-    from that of the output and the one that brings the engine to its speed. Where another mode fits better, the machines
-    synchronise its element, which closes without slip; they take over what the other one carries, and that opens.
+    from that of the output and the one that brings the engine to its speed. Where another mode fits better, the
+    machines synchronise its element, which closes without slip; they take over what the other one carries, and that
+    opens.
 
     Parameters:
         box: the gearbox, with the rows of its modes
