@@ -13,7 +13,7 @@ from clutchwork.shifts.exchange import exchanges
 from clutchwork.shifts.handover import Handover, allocation, handover, is_straight
 from clutchwork.shifts.plans import plan
 from support.amount import amount
-from support.shift_car import SENSED, car
+from support.shift_car import FINAL_DRIVE, SENSED, car
 
 BOXES = {name: cw.Gearbox.load(name) for name in ("zf-8hp70", "ford-10r80", "six-speed", "mb-9g-v1", "toyota-a760e")}
 
@@ -170,3 +170,24 @@ def test_speeds_go_straight_from_gear_to_gear(before: str, after: str, speed: fl
     share = slips / slips[:, :1]
     # of the whole way; the output rings meanwhile
     assert np.max(np.abs(share[0] - share[1])) < 0.25
+
+
+@pytest.mark.parametrize("throttle", [0.05, 0.3])
+def test_a_downshift_over_many_gears_does_not_brake_the_car(throttle: float) -> None:
+    """From 7 to 2 with little at hand the engine brings most of what the input needs, and it takes longer.
+
+    What elements pull is `pull` at the input, in second gear at the half shafts; a half more for what rings there and
+    for the engine, which follows its throttle late.
+    """
+    box = BOXES["zf-8hp70"]
+    made = {}
+    for pull in (40.0, 1e3):
+        settings = cw.shifts.ShiftSettings(pull=pull)
+        made[pull] = cw.shifts.survey(
+            lambda gear: car(box, gear, 120.0), box, [("7", "2")], sensed=SENSED, throttles=(throttle,),
+            settings=settings, rtol=1e-6,
+        ).results[0]  # fmt: skip
+    least = {pull: float(np.min(one.run["half_shafts.torque"])) for pull, one in made.items()}
+    assert all(one.record.reached for one in made.values())
+    assert least[40.0] > -1.5 * 40.0 * box.ratios["2"] * FINAL_DRIVE - 100.0
+    assert least[1e3] < 2.0 * least[40.0]

@@ -110,10 +110,10 @@ def test_launch_and_stop_without_converter(name: str) -> None:
     assert (first.after, last.after) == ("1", "1")
     assert first.reached
     assert last.reached
-    slipping = next(time for time, state in first.phases if state == "inertia")
-    assert first.end is not None
-    times = np.linspace(slipping + 1.5, first.end - 0.3, 50)
-    assert np.all(np.abs(run.at(times)["engine.speed"] - 150.0) < 30.0)
+    began = {state: time for time, state in first.phases}
+    times = np.linspace(began["inertia"] + 1.0, began["sync"], 50)
+    # the gain is far below the slowest mode of the drive shafts
+    assert np.all(np.abs(run.at(times)["engine.speed"] - 150.0) < 35.0)
     # let go above the speed at which it would stall, and never below idle by much
     assert any(one.after == "N" or "let go" in one.problem for one in control.records)
     assert np.min(run["engine.speed"]) > 60.0
@@ -136,7 +136,7 @@ def test_the_driver_gives_up_a_launch() -> None:
         "N",
         [],
         8.0,
-        lambda time: 0.35 if 0.5 < time < 1.8 or time > 3.5 else 0.0,
+        lambda time: 0.35 if 0.5 < time < 1.2 or time > 3.5 else 0.0,
         sensed=RIGID,
         schedule=cw.shifts.ShiftSchedule.of(box, up=((0.0, 300.0),), down=((0.0, 90.0),)),
         settings=cw.shifts.ShiftSettings(launch_speed=150.0),

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 import clutchwork as cw
-from support.shift_car import SENSED, car
+from support.shift_car import FULL_LOAD, MOTORING, SENSED, car, rigid
 
 BOX = cw.Gearbox.load("zf-8hp70")
 SUM = cw.shifts.Sensed(torque=("converter.turbine.torque", "motor.torque"), throttle="combustion.throttle")
@@ -52,13 +52,74 @@ def test_what_a_motor_cannot_give_is_left_to_the_throttle() -> None:
 
 
 def test_limits_and_ratios() -> None:
-    """What is left is what the motor does not give at the input."""
-    motor = cw.shifts.TorqueSource("m", -50.0, 80.0, ratio=2.0, driven=30.0)
-    assert motor.gives(-40.0) == (10.0, 0.0)
-    assert motor.gives(-200.0) == (-50.0, -40.0)
-    assert motor.gives(200.0) == (80.0, 100.0)
+    """Torques at the input, of a motor that turns twice as fast; its power limits them above a speed."""
+    motor = cw.shifts.TorqueSource("m", -50.0, 80.0, ratio=2.0, driven=30.0, power=(-4e3, 8e3))
+    assert motor.demand(0.3, 0.0) == 60.0
+    assert motor.limits(0.0) == (-100.0, 160.0)
+    assert motor.limits(100.0) == (-40.0, 80.0)
+    # backward it drives with what is negative
+    assert motor.limits(-100.0) == (-80.0, 40.0)
+    assert motor.command(60.0, 0.0) == 30.0
     with pytest.raises(cw.UseError, match="least is 1 N m, above most, -1 N m"):
         cw.shifts.TorqueSource("m", 1.0, -1.0)
+
+
+def test_an_engine_gives_torque_by_its_throttle() -> None:
+    """Throttle is the share between both curves, held beyond them; what a driver asks for follows from it."""
+    engine = cw.shifts.EngineSource("e.throttle", [(0.0, 100.0), (100.0, 200.0)], [(0.0, -20.0), (100.0, -40.0)])
+    assert engine.limits(50.0) == (-30.0, 150.0)
+    for pedal in (0.0, 0.3, 1.0):
+        assert engine.command(engine.demand(pedal, 50.0), 50.0) == pytest.approx(pedal)
+    assert engine.command(-500.0, 50.0) == 0.0
+    with pytest.raises(cw.UseError, match="need points"):
+        cw.shifts.EngineSource("e.throttle", [])
+
+
+def hybrid(least: float, sources: str) -> tuple[cw.Trajectory, cw.shifts.ShiftController]:
+    """P2: engine and motor at the input of the 8HP70, third gear to fourth; the motor drives with 40 N m."""
+    d = rigid(BOX, "3", 300.0)
+    shaft = next(node for node in d.nodes if node.name == "engine")
+    d.add(cw.Torque("motor", shaft=shaft, torque=40.0))
+    engine = cw.shifts.EngineSource("combustion.throttle", FULL_LOAD, MOTORING, lag=0.05)
+    motor = cw.shifts.TorqueSource("motor.torque", least, 150.0, driven=40.0)
+    system = d.assemble()
+    control = cw.shifts.ShiftController(BOX, cw.shifts.plant_of(system, BOX), gear="3")
+    sim = cw.Simulator(system, rtol=1e-6)
+    more = {"throttle": lambda _: 0.4, "sources": {"both": [motor, engine], "engine": [engine]}[sources]}
+    cw.shifts.drive(sim, control, 0.6, **more)
+    control.request("4")
+    return cw.shifts.drive(sim, control, 2.4, **more), control
+
+
+def test_motor_and_engine_blend() -> None:
+    """The motor gives what it can, the throttle the rest: together the share of the torque that was asked for."""
+    whole, control = hybrid(-200.0, "both")
+    assert control.records[0].reached
+    # all of it is the motor's: the engine follows the driver
+    assert np.ptp(whole["combustion.throttle"]) < 1e-9
+    begin = next(time for time, state in control.records[0].phases if state == "inertia")
+    for least in (-200.0, 20.0):
+        run, control = hybrid(least, "both")
+        assert control.records[0].reached
+        at = run.at(np.array([begin - 0.005, begin + 0.05]))
+        speed = at["engine.speed"]
+        full, drag = (np.interp(speed, *zip(*line, strict=True)) for line in (FULL_LOAD, MOTORING))
+        asked = at["combustion.throttle"] * (full - drag) + drag + at["motor.torque"]
+        usual = 0.4 * (full - drag) + drag + 40.0
+        # the lag of the throttle is led, so only what the motor gives at once is exact
+        assert asked[0] == pytest.approx(usual[0])
+        assert asked[1] == pytest.approx(usual[1] - 0.3 * usual[0], rel=0.02 if least < 0.0 else 0.2)
+        assert np.min(run["motor.torque"]) >= least
+
+
+def test_a_motor_makes_a_shift_shorter() -> None:
+    """With a reduction that acts at once the clutch makes less heat than with that of an engine which lags."""
+    heats = []
+    for sources in ("both", "engine"):
+        run, control = hybrid(-200.0, sources)
+        assert control.records[0].reached
+        heats.append(run["gearbox.E.heat"][-1] + run["gearbox.D.heat"][-1] + run["gearbox.C.heat"][-1])
+    assert heats[0] < heats[1]
 
 
 def test_without_motors_nothing_changes() -> None:

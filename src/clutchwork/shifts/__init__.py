@@ -8,13 +8,13 @@ from clutchwork.shifts.controller import ShiftController
 from clutchwork.shifts.detect import Shift, shifts_of
 from clutchwork.shifts.diagnosis import diagnose
 from clutchwork.shifts.drive import Sensed, drive
-from clutchwork.shifts.dual_clutch import DualClutch, DualClutchSettings, DualClutchShift, drive_dual_clutch
 from clutchwork.shifts.exchange import Exchange, exchanges
 from clutchwork.shifts.fault_results import Fault, FaultResult, FaultTable
 from clutchwork.shifts.faults import fault_table, single_faults
 from clutchwork.shifts.fill_test import fill_test
 from clutchwork.shifts.gears import InGear, gears_of
 from clutchwork.shifts.handover import Handover
+from clutchwork.shifts.hybrid import HybridController, HybridSettings, drive_hybrid
 from clutchwork.shifts.metrics import ShiftQuality, qualities
 from clutchwork.shifts.plant import Plant, plant_of
 from clutchwork.shifts.record import Finding, Measured, ShiftRecord
@@ -23,19 +23,19 @@ from clutchwork.shifts.schedule import ShiftSchedule
 from clutchwork.shifts.settings import ShiftSettings
 from clutchwork.shifts.shift_map import Inhibit, ShiftMap
 from clutchwork.shifts.survey import Survey, Surveyed, neighbours, survey
-from clutchwork.shifts.torque_sources import TorqueSource
+from clutchwork.shifts.torque_sources import EngineSource, TorqueSource
 
 __all__ = [
-    "DualClutch",
-    "DualClutchSettings",
-    "DualClutchShift",
     "ElementActuator",
+    "EngineSource",
     "Exchange",
     "Fault",
     "FaultResult",
     "FaultTable",
     "Finding",
     "Handover",
+    "HybridController",
+    "HybridSettings",
     "InGear",
     "Inhibit",
     "Measured",
@@ -53,7 +53,7 @@ __all__ = [
     "TorqueSource",
     "diagnose",
     "drive",
-    "drive_dual_clutch",
+    "drive_hybrid",
     "exchanges",
     "fault_table",
     "fill_test",

@@ -1,14 +1,14 @@
-"""Commands of shift elements: pressures of clutches and brakes, sleeves of dog clutches, none of freewheels."""
+"""Commands of shift elements: pressures of clutches and brakes, sleeves of teeth, none of freewheels."""
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
 from clutchwork.base.quote import listed
 from clutchwork.shifts.driver import ActuatorDriver
-from clutchwork.shifts.exchange import FRICTION
+from clutchwork.shifts.exchange import FRICTION, SLEEVES
 
 if TYPE_CHECKING:
     from clutchwork.gearbox.gearbox import Gearbox
@@ -20,8 +20,8 @@ if TYPE_CHECKING:
 PERIOD = 0.01
 # lags for which an element that was filled is waited for
 SETTLE = 2.0
-# a sleeve that is further in is taken as engaged
-ENGAGED = 0.9
+# a sleeve that is further in is taken as engaged, one that is further out as free
+ENGAGED, FREE = 0.9, 0.4
 
 
 @dataclass
@@ -29,16 +29,21 @@ class Actuation:
     """The commands that hold at present, by element; freewheels have none and are passed over.
 
     Pressures of elements behind valves and pistons stand for torques, of which `outputs` makes commands.
+
+    Parameters: rivals, of each synchroniser those of the same shaft, which must be out before it goes in; cone, share
+    of its force with which it synchronises.
     """
 
     box: Gearbox
     plant: Plant
     prefix: str
+    rivals: Mapping[str, tuple[str, ...]]
+    cone: float
     commands: dict[str, float] = field(default_factory=dict)
 
     def __post_init__(self) -> None:
         self.kinds = {element.name: element.kind for element in self.box.elements}
-        ends = {"clutch": "pressure", "brake": "pressure", "dog": "command"}
+        ends = {"clutch": "pressure", "brake": "pressure", "dog": "command", "synchroniser": "forward_dog.command"}
         self._signals = {
             name: f"{self.prefix}.{name}.{ends[kind]}" for name, kind in self.kinds.items() if kind in ends
         }
@@ -53,7 +58,7 @@ class Actuation:
 
     def is_dog(self, name: str) -> bool:
         """Whether it is there and engages by teeth."""
-        return self.kinds.get(name) == "dog"
+        return self.kinds.get(name) in SLEEVES
 
     def carries(self, name: str, torque: float) -> bool:
         """Whether it is there and could carry a torque on its follower [N m]; a freewheel pushes one way only."""
@@ -64,16 +69,24 @@ class Actuation:
         return self.box.closed_in(gear) if gear in self.box.gears else ()
 
     def only(self, gear: str, with_: ShiftSettings) -> None:
-        """The elements of a gear closed at once, all others open.
+        """The elements of a gear closed at once, all others open, but for synchronisers, whose gears may wait.
 
         In neutral the dog clutches of first gear are in, for they cannot mesh while the input turns.
         """
         closed = self.closed_in(gear)
         if gear not in self.box.gears:
             first = max(self.box.ratios, key=lambda one: self.box.ratios[one])
-            closed = tuple(name for name in self.closed_in(first) if self.is_dog(name))
-        self.open(*(name for name in self.kinds if name not in closed))
+            closed = tuple(name for name in self.closed_in(first) if self.kinds[name] == "dog")
+        self.open(*(name for name in self.kinds if name not in (*closed, *self.rivals)))
         self.close(closed, with_)
+
+    def engage(self, sleeve: str, now: Measured) -> bool:
+        """Move a sleeve in, once its rivals are out; whether it is in."""
+        rivals = self.rivals.get(sleeve, ())
+        self.open(*rivals)
+        if all(now.sleeves.get(name, 0.0) < FREE for name in rivals):
+            self.commands[sleeve] = 1.0
+        return now.sleeves.get(sleeve, 1.0) > ENGAGED
 
     def wrong(self, gear: str, with_: ShiftSettings, now: Measured) -> str:
         """Why a gear is not in: elements that slip, sleeves that are out; empty where it is."""
@@ -126,6 +139,8 @@ class Actuation:
         """
         self.period = min(self.period, passed) if passed > 0.0 else self.period
         now = {self._signals[name]: self._output(name, passed) for name in self.commands}
+        cones = (name for name in self.commands if self.kinds[name] == "synchroniser")
+        now |= {f"{self.prefix}.{name}.forward_cone.normal_force": self.cone * self.commands[name] for name in cones}
         changed = {signal: value for signal, value in now.items() if self.sent.get(signal) != value}
         self.sent = now
         return changed

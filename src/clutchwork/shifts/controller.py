@@ -13,11 +13,15 @@ from clutchwork.shifts.actuation import Actuation
 from clutchwork.shifts.adaptation import adapt
 from clutchwork.shifts.choice import GearChoice
 from clutchwork.shifts.course import ExchangeSequence
+from clutchwork.shifts.engine_led import EngineLedSequence
 from clutchwork.shifts.exchange import Exchange
 from clutchwork.shifts.handover import Handover, handover, is_straight
+from clutchwork.shifts.interrupted import InterruptedSequence
 from clutchwork.shifts.parallel import ParallelSequence
-from clutchwork.shifts.plans import plan
+from clutchwork.shifts.plans import between_halves, plan
 from clutchwork.shifts.plant import Plant
+from clutchwork.shifts.preselect import Halves, expected
+from clutchwork.shifts.profile import Trend
 from clutchwork.shifts.record import NEUTRAL, Measured, ShiftRecord
 from clutchwork.shifts.settings import ShiftSettings
 
@@ -26,7 +30,7 @@ if TYPE_CHECKING:
     from clutchwork.shifts.schedule import ShiftSchedule
     from clutchwork.shifts.shift_map import ShiftMap
 
-Course = ExchangeSequence | ParallelSequence
+Course = ExchangeSequence | ParallelSequence | EngineLedSequence
 
 
 @dataclass
@@ -49,6 +53,10 @@ class ShiftController:
     and closes near equal speeds, to which the engine comes where no clutch can bring the input there. A request while a
     shift goes on is followed at once, from the speeds that are; where dog clutches or freewheels take part, or statics
     do not say how, the shift is finished before. One that does not get to its new speed within `longest` goes back.
+
+    Between gears of teeth alone, as of an electric axle, the motor turns the input to its new speed without torque at
+    the output. In a dual-clutch gearbox the next gear waits on the free shaft, two gears of one shaft are reached
+    through one of the other, and the engine changes its speed by its own torque, which `torque_change` has.
 
     Without a converter (`launch_speed` of the settings) it lets the input go before the engine stalls, and drives off
     again where the driver wants to.
@@ -87,7 +95,9 @@ class ShiftController:
     def __post_init__(self) -> None:
         self._known(self.gear)
         self._choice = GearChoice(self.schedule, self.settings)
-        self._do = Actuation(self.box, self.plant, self.prefix)
+        self._halves, self._output, self._sourced = Halves.of(self.box), Trend(), False
+        rivals = self._halves.rivals if self._halves else {}
+        self._do = Actuation(self.box, self.plant, self.prefix, rivals, self.settings.cone)
         self._do.only(self.gear, self.settings)
         for name, one in self._do.drivers.items():
             one.fill_time = self.known.get(name, one.fill_time)
@@ -107,6 +117,8 @@ class ShiftController:
         """Pressures [Pa], currents [A] and positions of sleeves by signal, those that change alone, at a time [s]."""
         period = max(0.0, time - self._called)
         self._called = time
+        self._output.follow(now.output_speed, period)
+        self._sourced = now.demand is not None
         course = self._course
         if self._choice.stalls(self.gear, course is not None and not course.one.off, period, now):
             self._abandon(time, NEUTRAL, "let go before the engine stalled")
@@ -118,6 +130,8 @@ class ShiftController:
                 self._start(wanted, time, now)
         if self._course is not None:
             self._go_on(self._course, time, period, now)
+        if self._halves and (self._course is None or self._course.state == "inertia"):
+            self._preselect(self._halves, now)
         self._seen = (time, now.slips)
         return self._do.outputs(period)
 
@@ -125,6 +139,11 @@ class ShiftController:
     def shifting(self) -> bool:
         """Whether a shift is in progress."""
         return self._course is not None
+
+    @property
+    def led(self) -> bool:
+        """Whether the engine changes its speed by its own torque: in a dual-clutch gearbox."""
+        return self._halves is not None
 
     @property
     def state(self) -> str:
@@ -138,9 +157,7 @@ class ShiftController:
 
     def torque_change(self, now: Measured) -> float:
         """Torque that it asks for at the input on top of what the driver asks for [N m], below zero a reduction."""
-        course = self._course
-        loaded = course.loaded if isinstance(course, ParallelSequence) else now.input_torque
-        return (self.torque_factor - 1.0) * loaded
+        return 0.0 if self._course is None else self._course.torque_change(now)
 
     @property
     def blip(self) -> float:
@@ -166,7 +183,11 @@ class ShiftController:
 
     def _start(self, gear: str, time: float, now: Measured) -> None:
         before, after = self._do.closed_in(self.gear), self._do.closed_in(gear)
-        self._left = list(plan(self.box, before, after, self.plant.inertias, now.input_torque))
+        inertias, ratios = self.plant.inertias, self.box.ratios
+        if self._halves and ratios.get(self.gear, 0.0) * ratios.get(gear, 0.0) > 0.0:
+            self._left = list(between_halves(self.box, self._halves, self.gear, gear, inertias))
+        else:
+            self._left = list(plan(self.box, before, after, inertias, now.input_torque))
         self.records.append(ShiftRecord(self.gear, gear, time, now.input_torque >= 0.0, tuple(self._left)))
         self.gear, self._choice.let_go = gear, ""
         if self._left:
@@ -174,6 +195,15 @@ class ShiftController:
         else:
             self._do.only(gear, self.settings)
             self._finish(time)
+
+    def _preselect(self, halves: Halves, now: Measured) -> None:
+        """Engage the gear that comes next on the shaft whose clutch is open."""
+        schedule, course = self.schedule, self._course
+        gear = self._choice.next_gear(now) if self.gear == NEUTRAL else self.gear
+        if schedule is not None and gear in halves.clutch and (course is None or not course.one.off):
+            waits = expected(halves, schedule, gear, now.output_speed, now.throttle)
+            for one in (gear, waits) if self.gear == NEUTRAL else (waits,):
+                self._do.engage(halves.sleeve[one], now)
 
     def _begin(self, time: float, rates: Mapping[str, float] | None = None) -> None:
         """The next part of the plan; rates, of slips where another shift goes over into it."""
@@ -187,10 +217,16 @@ class ShiftController:
             self._course = made
             record.phases.append((time, "fill"))
             return
-        opens = tuple(name for name in self._do.kinds if name not in (*one.kept, one.off, one.on))
+        opens = tuple(name for name in self._do.kinds if name not in (*one.kept, one.off, one.on, *self._do.rivals))
         opens += (one.on,) if not one.off else ()
+        if self._halves and one.off:
+            self._course = EngineLedSequence(one, self._with(record), self._do, time, self._output)
+            record.phases.append((time, "mesh"))
+            return
         next_on = ahead.on if isinstance(ahead, Exchange) else ""
-        self._course = ExchangeSequence(one, self._with(record), self._do, time, filled, next_on, opens)
+        teeth = self._sourced and self._do.is_dog(one.off) and self._do.is_dog(one.on)
+        kind = InterruptedSequence if teeth else ExchangeSequence
+        self._course = kind(one, self._with(record), self._do, time, filled, next_on, opens)
         record.phases.append((time, "mesh"))
 
     def _handover(self, off: Sequence[str], on: Sequence[str], kept: Sequence[str]) -> Handover | None:
@@ -223,7 +259,8 @@ class ShiftController:
         """Back to the gear before."""
         gear = self.records[-1].before
         if not isinstance(course, ParallelSequence):
-            self._abandon(time, gear, f"{course.one.on} did not engage")
+            late = course.one.kept[-1] if isinstance(course, EngineLedSequence) else course.one.on
+            self._abandon(time, gear, f"{late} did not engage")
             return
         why = f"the input did not come to its new speed within {time - course.since:.2g} s"
         if not self._go_over(course, gear, why, time, now):

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from clutchwork.shifts.actuation import ENGAGED
-from clutchwork.shifts.profile import Profile
+from clutchwork.shifts.profile import Profile, share_of
 
 if TYPE_CHECKING:
     from clutchwork.shifts.actuation import Actuation
@@ -14,6 +14,8 @@ if TYPE_CHECKING:
     from clutchwork.shifts.record import Measured
     from clutchwork.shifts.settings import ShiftSettings
 
+# how far above its launch speed an engine without load comes [rad/s]
+RUN_UP = 20.0
 # torque at the input below which a dog clutch counts as unloaded [N m]
 UNLOADED = 5.0
 
@@ -39,27 +41,36 @@ class ExchangeSequence:
     def __post_init__(self) -> None:
         self._profile = Profile(self.one, self.with_, self.do.is_dog(self.one.on))
 
+    def torque_change(self, now: Measured) -> float:
+        """What is asked for at the input on top of the driver's torque [N m]."""
+        return (self.torque_factor - 1.0) * (self._loaded if now.demand is None else now.demand)
+
     def step(self, time: float, period: float, now: Measured) -> str:
         """Do what the state asks for; the state that begins, if one does. "done": the exchange is made."""
         new: str = getattr(self, self.state)(time - self.since, period, now)
         if new == "fill":
             self.state, self.since = new, time
-            return self.fill(0.0, period, now) or new
-        if new:
+            new = self.fill(0.0, period, now) or new
+        if new and new != self.state:
             self.state, self.since = new, time
         if new in ("torque", "inertia"):
-            self._loaded = now.input_torque
+            self._loaded, self.torque_factor = now.input_torque, 1.0
             self._profile.begin(now)
         return new
 
     # ------------------------------------------------------------------------------------------------------ states
 
     def mesh(self, passed: float, _: float, now: Measured) -> str:
-        """Dog clutches of the gear that stand still go in before anything turns; then what neither opens nor closes."""
+        """Dog clutches of the gear that stand still go in before anything turns; then what neither opens nor closes.
+
+        A synchroniser brings its shaft to speed before.
+        """
         one, with_, do = self.one, self.with_, self.do
-        out = [name for name in one.kept if do.is_dog(name) and now.sleeves.get(name, 1.0) < ENGAGED]
-        do.close(out, with_)
+        self._keep_down(now)
+        out = [name for name in one.kept if do.is_dog(name) and not do.engage(name, now)]
         if passed < with_.fill_time and any(abs(now.slips[name]) < with_.dog_slip for name in out):
+            return ""
+        if passed < with_.longest and any(name in do.rivals for name in out):
             return ""
         do.open(*self.opens)
         # what was closed stays so; what closes beside `on` stops its members softly while that is filled
@@ -70,9 +81,10 @@ class ExchangeSequence:
     def fill(self, passed: float, _: float, now: Measured) -> str:
         """The one that closes up to where it touches, the other down to what it carries."""
         one, with_, do = self.one, self.with_, self.do
+        self._keep_down(now)
         takes = not self.filled and (do.slides(one.on) or do.slides(one.off))
         self._fill_time = self._fill_time or do.fill_time([one.on], with_)
-        share = _share(passed, self._fill_time if takes else 0.0)
+        share = share_of(passed, self._fill_time if takes else 0.0)
         do.carry(one.on, 0.0, with_)
         do.commands.update(dict.fromkeys(self._closing, share * share * with_.full_pressure))
         if do.slides(one.off):
@@ -91,7 +103,7 @@ class ExchangeSequence:
         one, with_, do = self.one, self.with_, self.do
         if do.is_dog(one.off) and not self._takes_over(now):
             return self._unload(passed, now)
-        share, torque = _share(passed, with_.torque_time), abs(now.input_torque)
+        share, torque = share_of(passed, with_.torque_time), abs(now.input_torque)
         do.carry(one.on, share * abs(one.on_torque) * torque, with_)
         do.carry(one.off, (1.0 - share) * with_.margin * abs(one.off_torque) * torque, with_)
         if share < 1.0 and abs(now.slips[one.off]) <= with_.sync_slip:
@@ -126,7 +138,7 @@ class ExchangeSequence:
         """At equal speeds: the one that closes up to what it carries, the other down to nothing."""
         one, with_, do = self.one, self.with_, self.do
         let_go = not do.slides(one.off) or do.commands[one.off] == 0.0
-        share = 1.0 if let_go else _share(passed, 0.5 * with_.torque_time)
+        share = 1.0 if let_go else share_of(passed, 0.5 * with_.torque_time)
         torque = abs(now.input_torque)
         if do.slides(one.on):
             least = do.pressure(one.on, with_.margin * abs(one.on_torque) * torque, with_)
@@ -159,9 +171,15 @@ class ExchangeSequence:
             return False
         return (torque >= 0.0) == (self._profile.lacks(now) <= 0.0)
 
+    def _keep_down(self, now: Measured) -> None:
+        """An engine that nothing loads yet is kept near its launch speed."""
+        if self.with_.launch_speed and not self.one.off:
+            beyond = now.input_speed - self.with_.launch_speed
+            self.torque_factor = 1.0 - min(1.0, max(0.0, beyond / RUN_UP))
+
     def _unload(self, passed: float, now: Measured) -> str:
         """Less torque of the engine, or more where it drags, until the teeth of a dog clutch are free."""
-        share = _share(passed, self.with_.torque_time)
+        share = share_of(passed, self.with_.torque_time)
         driving = self._loaded > 0.0
         self.torque_factor, self.blip = 1.0 - share * driving, share * self.with_.blip * (not driving)
         if now.input_torque * self._loaded > UNLOADED * abs(self._loaded) and passed < self.with_.longest:
@@ -181,7 +199,3 @@ class ExchangeSequence:
             return True
         passed = do.slides(one.on) and one.off != "" and self._profile.lacks(now) * self._profile.slip < 0.0
         return passed or abs(now.slips[one.on]) < self.with_.sync_slip
-
-
-def _share(passed: float, time: float) -> float:
-    return min(1.0, passed / max(time, 1e-9))

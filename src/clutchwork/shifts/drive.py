@@ -6,9 +6,10 @@ from collections.abc import Callable, Mapping, Sequence
 from typing import TYPE_CHECKING
 
 from clutchwork.base.classes import dataclass
+from clutchwork.base.errors import UseError
 from clutchwork.shifts.controller import ShiftController
 from clutchwork.shifts.record import Measured
-from clutchwork.shifts.torque_sources import TorqueSource, shared
+from clutchwork.shifts.torque_sources import Source, TorqueShare
 
 if TYPE_CHECKING:
     from clutchwork.run.trajectory import Trajectory
@@ -24,15 +25,16 @@ class Sensed:
 
     Parameters:
         torque: signals whose sum is the torque at the input [N m], such as ("converter.turbine.torque",
-        "lock_up.torque"); one with a minus before it counts negative
-        throttle: signal of the throttle of the engine, set to that of the driver times what the controller asks for
+        "lock_up.torque"); one with a minus before it counts negative; none: what `sources` were asked for
+        throttle: signal of the throttle of the engine, set to that of the driver times what the controller asks for;
+        none: the engine is one of the `sources`
         input: speed of the input of the gearbox [rad/s], by default of its input member
         output: the same of its output
         oil: temperature of the oil [K], where a shift map asks for it
         grade: of the road [rad], where one does
     """
 
-    torque: tuple[str, ...]
+    torque: tuple[str, ...] = ()
     throttle: str = ""
     input: str = ""
     output: str = ""
@@ -44,35 +46,39 @@ class Sensed:
         if isinstance(self.torque, str):
             object.__setattr__(self, "torque", (self.torque,))
 
-    def read(self, sim: Simulator, control: ShiftController, throttle: float) -> Measured:
-        """What the controller knows at the present time of a run; throttle, of the driver."""
-        return _SensorReader(self, sim, control)(throttle)
-
 
 class _SensorReader:
     """Reads what the controller knows; the names are put together once."""
 
-    def __init__(self, sensed: Sensed, sim: Simulator, control: ShiftController) -> None:
+    def __init__(self, sensed: Sensed, sim: Simulator, control: ShiftController, share: TorqueShare) -> None:
         box, prefix = control.box, control.prefix
-        self.sim, self.control = sim, control
+        self.sim, self.share, self.change = sim, share, 0.0
         self.ends = [sensed.input or f"{prefix}.{box.input}.speed", sensed.output or f"{prefix}.{box.output}.speed"]
         self.signs = [-1.0 if name[0] == "-" else 1.0 for name in sensed.torque]
         self.plain = [*self.ends, *(name.removeprefix("-") for name in sensed.torque)]
         self.beside = {name: signal for name, signal in (("oil", sensed.oil), ("grade", sensed.grade)) if signal}
-        names = [f"{prefix}.{element.name}" for element in box.elements]
+        inner = {"synchroniser": ".forward_dog"}
+        names = [f"{prefix}.{element.name}{inner.get(element.kind, '')}" for element in box.elements]
         self.elements = [element.name for element in box.elements]
         # a dog clutch has a rate of its angle
         self.slips = [f"{name}.slip" if f"{name}.slip" in sim else f"{name}.rate" for name in names]
-        self.dogs = [name for name in self.elements if f"{prefix}.{name}.sleeve" in sim]
-        self.sleeves = [f"{prefix}.{name}.sleeve" for name in self.dogs]
+        teeth = {e: f"{name}.sleeve" for e, name in zip(self.elements, names, strict=True) if f"{name}.sleeve" in sim}
+        self.dogs = list(teeth)
+        self.all = [*self.plain, *self.slips, *teeth.values()]
 
     def __call__(self, throttle: float) -> Measured:
-        first, second, *torques = self.sim[self.plain].tolist()
-        total = sum(sign * torque for sign, torque in zip(self.signs, torques, strict=True))
-        slips = dict(zip(self.elements, self.sim[self.slips].tolist(), strict=True))
-        sleeves = dict(zip(self.dogs, self.sim[self.sleeves].tolist(), strict=True)) if self.dogs else {}
-        beside = {name: float(self.sim[signal]) for name, signal in self.beside.items()}
-        return Measured(first, second, total, throttle, slips, sleeves, **beside)
+        values = self.sim[self.all].tolist()
+        first, second, *torques = values[: len(self.plain)]
+        rest = values[len(self.plain) :]
+        demand, least, most = self.share.limits(throttle, first)
+        known = self.share.sources and not torques
+        total = demand + self.change if known else sum(s * t for s, t in zip(self.signs, torques, strict=True))
+        slips = dict(zip(self.elements, rest, strict=False))
+        sleeves = dict(zip(self.dogs, rest[len(slips) :], strict=True))
+        given = {name: float(self.sim[signal]) for name, signal in self.beside.items()}
+        if self.share.sources:
+            given |= {"demand": demand, "least": least, "most": most}
+        return Measured(first, second, total, throttle, slips, sleeves, **given)
 
 
 def drive(
@@ -80,30 +86,39 @@ def drive(
     control: ShiftController,
     until: float,
     *,
-    sensed: Sensed,
-    throttle: Callable[[float], float],
+    throttle: Callable[[float], float] | str,
+    sensed: Sensed | None = None,
     also: Also | None = None,
-    sources: Sequence[TorqueSource] = (),
+    sources: Sequence[Source] = (),
     period: float = 0.01,
     resting: float = 0.05,
 ) -> Trajectory:
     """Run a driveline under the controller of its gearbox, up to a time [s]; the trajectory up to there.
 
     Use it for shifts on a schedule or by request: `control.records` has them afterwards. It can be called again to go
-    on.
+    on. UseError where nothing says the torque at the input, or a dual-clutch gearbox has no `sources`.
 
-    Parameters: throttle, of the driver over time, 0 to 1; also, what else is set, such as brakes; sources, motors that
-    give what a shift asks for before the engine does, the first one first; period, from one call
-    of the controller to the next while it shifts [s]; resting, the same between shifts.
+    Parameters: throttle, of the driver over time, 0 to 1, or a signal such as "driver.throttle"; sensed, signals that
+    are read; also, what else is set, such as brakes; sources, motors and engine that give what a shift asks for, the
+    first one first; period, from one call of the controller to the next while it shifts [s]; resting, the same between
+    shifts.
     """
-    read = _SensorReader(sensed, sim, control)
-    set_: dict[str, float] = {}
+    share, sensed = TorqueShare(sources), sensed or Sensed()
+    if not sources and (control.led or not sensed.torque):
+        who = (
+            "the engine changes its speed by its own torque" if control.led else "nothing says the torque at the input"
+        )
+        raise UseError("cw.shifts.drive", [f"{who}: give sources, such as cw.shifts.EngineSource.of(engine)"])
+    read, set_, last = _SensorReader(sensed, sim, control, share), dict[str, float](), sim.time
     while sim.time < until - 1e-9:
-        time, pedal = sim.time, float(throttle(sim.time))
+        time = sim.time
+        pedal = float(sim[throttle]) if isinstance(throttle, str) else float(throttle(time))
         wanted = {} if set_ else control.commands
         now = read(pedal)
         wanted |= control.step(time, now)
-        torques, left = shared(control, now, sources, pedal)
+        step = min(period if control.shifting else resting, until - time)
+        torques, left = share.signals(control, now, pedal, time - last, step)
+        read.change, last = control.torque_change(now), time
         wanted |= torques
         if sensed.throttle:
             wanted[sensed.throttle] = left
@@ -113,5 +128,5 @@ def drive(
         if changed:
             sim.set(changed)
             set_ |= changed
-        sim.advance(min(period if control.shifting else resting, until - time))
+        sim.advance(step)
     return sim.run

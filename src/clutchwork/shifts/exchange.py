@@ -17,8 +17,8 @@ if TYPE_CHECKING:
     from clutchwork.gearbox.gearbox import Gearbox
     from clutchwork.gearbox.state import GearState
 
-# kinds that slip with a torque
-FRICTION = ("clutch", "brake")
+# kinds that slip with a torque, and those that engage by teeth
+FRICTION, SLEEVES = ("clutch", "brake"), ("dog", "synchroniser")
 
 
 @dataclass(frozen=True)
@@ -66,7 +66,7 @@ def exchanges(
     made, closed = [], before
     for off, on in way:
         later = _swapped(closed, off, on)
-        made.append(_exchange(box, off, on, closed, later, inertias))
+        made.append(exchange(box, off, on, closed, later, inertias))
         closed = later
     return tuple(made)
 
@@ -129,9 +129,10 @@ def _usable(box: Gearbox, after: tuple[str, ...], names: tuple[str, ...]) -> lis
     return [name for name in slide if not ratio_of(box, tuple(one for one in after if one != name))]
 
 
-def _exchange(
+def exchange(
     box: Gearbox, off: str, on: str, before: tuple[str, ...], after: tuple[str, ...], inertias: Mapping[str, float]
 ) -> Exchange:
+    """Of one element by another; before and after, all that is closed then."""
     old, new = state_of(box, before), state_of(box, after)
     kept = tuple(name for name in before if name != off)
     torque = _torque(new, on) if on else 0.0

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from clutchwork.shifts.handover import Array, allocation
-from clutchwork.shifts.profile import Trend
+from clutchwork.shifts.profile import Trend, share_of
 from clutchwork.shifts.record import Finding
 
 if TYPE_CHECKING:
@@ -35,6 +35,8 @@ JOLT = 0.25
 USUAL = 0.015
 # share of the inertia phase in which the torque of the engine comes back
 COMES_BACK = 0.4
+# torque that a downshift needs [N m] from which on the engine is asked for all of its throttle
+NEEDED = 20.0
 # torque of an element that counts as none, as a share of that of the input
 NOTHING = 1e-3
 
@@ -56,7 +58,8 @@ class ParallelSequence:
     state: str = "fill"
     torque_factor: float = 1.0  # what the engine is asked for
     loaded: float = 0.0  # N m, at the input where the inertia phase began
-    blip: float = 0.0  # none: no dog clutch waits for the engine
+    blip: float = 0.0  # throttle on top of that of the driver
+    lacking: float = 0.0  # N m, at the input, that the engine is asked for where elements would pull it up too hard
     late: float = 0.0  # s, for which those that close were waited for in the torque phase
     jolt: float = 0.0  # rad/s, largest second difference of the speed of the output while they were filled
     left: float = 0.0  # rad/s, slip with which it was closed
@@ -76,6 +79,10 @@ class ParallelSequence:
 
     def __post_init__(self) -> None:
         self._held = {name: self.do.commands.get(name, 0.0) for name in self.one.elements}
+
+    def torque_change(self, _: Measured) -> float:
+        """What is asked for at the input on top of the driver's torque [N m]."""
+        return (self.torque_factor - 1.0) * self.loaded + self.lacking
 
     def step(self, time: float, period: float, now: Measured) -> str:
         """Do what the state asks for; the state that begins, if one does. "done": the exchange is made."""
@@ -102,7 +109,7 @@ class ParallelSequence:
         if self.over:
             # nothing holds the input meanwhile
             return "inertia"
-        share = 1.0 if self.filled else _share(passed, self._fill_time)
+        share = 1.0 if self.filled else share_of(passed, self._fill_time)
         self._watch_fill(now)
         for name in one.on:
             do.carry(name, 0.0, with_)
@@ -129,7 +136,7 @@ class ParallelSequence:
                 do.carry(name, with_.margin**2 * abs(one.off_torques[name] * now.input_torque), with_)
             if passed < with_.longest:
                 return ""
-        share, taken = _share(passed - self.late, with_.torque_time), self._still(now)
+        share, taken = share_of(passed - self.late, with_.torque_time), self._still(now)
         for name in one.on:
             do.carry(name, share * taken[name], with_)
         for name in one.off:
@@ -151,10 +158,10 @@ class ParallelSequence:
         """All slips along their profiles at once, by those elements that pull the right way: equations (15), (16)."""
         one, with_, do = self.one, self.with_, self.do
         if self._is_synchronous(now):
-            self.torque_factor = 1.0
+            self.torque_factor, self.lacking, self.blip = 1.0, 0.0, 0.0
             return "sync"
         if passed > with_.longest:
-            self.torque_factor = 1.0
+            self.torque_factor, self.lacking, self.blip = 1.0, 0.0, 0.0
             lacks = float(np.linalg.norm(self._y(now)))
             self.left, self.instants["closed"] = lacks, self._now
             rises = float(one.input @ self._start) < 0.0
@@ -164,7 +171,7 @@ class ParallelSequence:
         for name in self.ahead:
             do.carry(name, 0.0, with_)
         # a shift that goes over into this one leaves torques that would jump
-        share = _share(passed, with_.end_time) if self.over else 1.0
+        share = share_of(passed, with_.end_time) if self.over else 1.0
         for name, torque in self._needed(period, now).items():
             # what opens stays filled meanwhile: it may have to hold the input again
             do.carry(name, torque, with_)
@@ -175,14 +182,14 @@ class ParallelSequence:
             left = 1.0 - min(1.0, self._passed / self._time)
             self.torque_factor = 1.0 - with_.reduction * min(1.0, left / COMES_BACK)
         else:
-            self.torque_factor = 1.0 + with_.increase if now.input_torque <= 0.0 and change > 0.0 else 1.0
+            self.torque_factor = 1.0
         return ""
 
     def sync(self, passed: float, _: float, now: Measured) -> str:
         """At equal speeds: those that close hold what they will carry, the others go down to nothing."""
         one, with_, do = self.one, self.with_, self.do
         let_go = not any(self._held.get(name, 0.0) for name in one.off)
-        share = 1.0 if let_go else _share(passed, 0.5 * with_.torque_time)
+        share = 1.0 if let_go else share_of(passed, 0.5 * with_.torque_time)
         for name in one.on:
             least = do.pressure(name, with_.margin * abs(one.on_torques[name] * now.input_torque), with_)
             # without slip it takes what the others leave, and not all that it could
@@ -289,10 +296,12 @@ class ParallelSequence:
         self._output = Trend(now.output_speed)
         change = -float(one.input @ self._start)
         time, longer = max(with_.inertia_time, 1e-9), abs(change) / max(with_.usual_step, 1e-9)
-        if change * now.input_torque > 0.0 and time:
-            # what the torque of the input itself brings there, without a pull of the elements that close
+        # what the torque of the input itself brings there, and a pull of the elements that close up to a limit
+        at_hand = AT_HAND * max(0.0, copysign(now.input_torque, change * now.input_torque))
+        at_hand += with_.pull if change > 0.0 else 0.0
+        if at_hand > 0.0 and change:
             kinetic = float(self._start @ one.inertia @ self._start) / abs(change)
-            longer = max(longer, 1.5 * kinetic / (AT_HAND * abs(now.input_torque)) / time)
+            longer = max(longer, 1.5 * kinetic / at_hand / time)
         self._time = time * min(max(1.0, longer), max(1.0, with_.stretch))
 
     def _needed(self, period: float, now: Measured) -> dict[str, float]:
@@ -314,11 +323,20 @@ class ParallelSequence:
         else:
             # what the plan lacks at its end is made up with its mean rate
             law = rate if x < 1.0 else -self._start / self._time
+        self._ask(float(self._start @ (one.inertia @ law)), now)
         force = one.inertia @ law + one.coupling * self._output.slope - one.input * now.input_torque
         torques, missed = self._taken(force, now)
         if with_.closed_loop and missed <= 1e-6:
             self._integral = self._integral + with_.integral * error * period
         return torques
+
+    def _ask(self, work: float, now: Measured) -> None:
+        """Torque of the engine for a downshift in which elements would pull the input up too hard: equation (22)."""
+        lever = float(self._start @ self.one.input)
+        needed = work / lever if lever < 0.0 else 0.0
+        given = now.input_torque if now.demand is None else now.demand
+        self.lacking = max(0.0, needed - self.with_.pull - given)
+        self.blip = min(self.with_.blip, self.lacking / max(needed, NEEDED))
 
     def _profile(self, x: float) -> tuple[Array, Array]:
         """The slips that are wanted at a share of the time [rad/s], and their rate [rad/s2]: equation (16)."""
@@ -336,7 +354,3 @@ class ParallelSequence:
     def _is_synchronous(self, now: Measured) -> bool:
         y = self._y(now)
         return bool(np.all((np.abs(y) < self.with_.sync_slip) | (y * self._start <= 0.0)))
-
-
-def _share(passed: float, time: float) -> float:
-    return min(1.0, passed / max(time, 1e-9))

@@ -4,13 +4,14 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from clutchwork.shifts.exchange import Exchange, exchanges, ratio_of
+from clutchwork.shifts.exchange import Exchange, exchange, exchanges, ratio_of
 from clutchwork.shifts.handover import Handover, handover, is_straight
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
 
     from clutchwork.gearbox.gearbox import Gearbox
+    from clutchwork.shifts.preselect import Halves
 
 Plan = tuple[Exchange | Handover, ...]
 
@@ -40,3 +41,14 @@ def plan(
 def _alone(box: Gearbox, one: Exchange, inertias: Mapping[str, float]) -> Handover | None:
     """An exchange of two elements that slip, as the handover that it is."""
     return handover(box, (one.off,), (one.on,), one.kept, inertias) if one.off and one.on else None
+
+
+def between_halves(box: Gearbox, halves: Halves, before: str, after: str, inertias: Mapping[str, float]) -> Plan:
+    """The exchanges of clutches from gear to gear of a dual-clutch gearbox, the gears of both shafts engaged."""
+    made, gear = list[Exchange](), before
+    for target in halves.route(before, after):
+        sleeves = (halves.sleeve[gear], halves.sleeve[target])
+        off, on = halves.clutch[gear], halves.clutch[target]
+        made.append(exchange(box, off, on, (off, *sleeves), (on, *sleeves), inertias))
+        gear = target
+    return tuple(made)

@@ -6,55 +6,53 @@ from collections.abc import Mapping
 from typing import TYPE_CHECKING
 
 from clutchwork.base.classes import dataclass
-from clutchwork.base.errors import UseError
-from clutchwork.base.quote import quote
-from clutchwork.shifts.schedule import ShiftSchedule
+from clutchwork.shifts.exchange import FRICTION, SLEEVES
 
 if TYPE_CHECKING:
     from clutchwork.gearbox.gearbox import Gearbox
-
-FRICTION = ("clutch", "brake")
-SLEEVES = ("synchroniser", "dog")
+    from clutchwork.shifts.schedule import ShiftSchedule
+    from clutchwork.shifts.shift_map import ShiftMap
 
 
 @dataclass(frozen=True)
 class Halves:
     """The two halves of a dual-clutch gearbox, by gear.
 
-    Parameters: clutch, the clutch of each gear; sleeve, the synchroniser or dog that engages it; shaft, the member
-    that its clutch drives; ratios, input over output.
+    Parameters: clutch, the clutch of each gear; sleeve, the synchroniser or dog clutch that engages it; ratios, input
+    over output.
     """
 
     clutch: Mapping[str, str]
     sleeve: Mapping[str, str]
-    shaft: Mapping[str, str]
     ratios: Mapping[str, float]
 
     @classmethod
-    def of(cls, box: Gearbox) -> Halves:
-        """The halves of a gearbox; UseError where a gear is not one clutch and one sleeve, or clutches are not two."""
+    def of(cls, box: Gearbox) -> Halves | None:
+        """The halves of a gearbox; None where a gear is not one clutch and one sleeve, or clutches are not two."""
         clutch, sleeve = dict[str, str](), dict[str, str]()
         for gear in box.ratios:
             closed = [box.element(name) for name in box.closed_in(gear)]
             clutches = [one.name for one in closed if one.kind in FRICTION]
             sleeves = [one.name for one in closed if one.kind in SLEEVES]
             if len(clutches) != 1 or len(sleeves) != 1:
-                raise UseError("cw.shifts.DualClutch", [f"gear {quote(gear)} is not one clutch and one synchroniser"])
+                return None
             clutch[gear], sleeve[gear] = clutches[0], sleeves[0]
-        if len(set(clutch.values())) != 2:
-            raise UseError("cw.shifts.DualClutch", [f"{box.name} has {len(set(clutch.values()))} clutches, not two"])
-        ends = {name: box.element(name).members for name in clutch.values()}
-        shaft = {gear: next(m for m in ends[name] if m != box.input) for gear, name in clutch.items()}
-        return cls(clutch, sleeve, shaft, box.ratios)
+        return cls(clutch, sleeve, box.ratios) if len({*clutch.values()}) == 2 else None
 
     @property
     def forward(self) -> list[str]:
         """Forward gears, the lowest first."""
         return sorted((gear for gear, ratio in self.ratios.items() if ratio > 0), key=lambda gear: -self.ratios[gear])
 
-    def on(self, clutch: str) -> list[str]:
-        """Gears of a clutch."""
-        return [gear for gear, name in self.clutch.items() if name == clutch]
+    @property
+    def rivals(self) -> dict[str, tuple[str, ...]]:
+        """By sleeve those of the same shaft, of which one is in at most."""
+        on = {
+            one: [self.sleeve[gear] for gear in self.clutch if self.clutch[gear] == one] for one in self.clutch.values()
+        }
+        return {
+            name: tuple(other for other in on[self.clutch[gear]] if other != name) for gear, name in self.sleeve.items()
+        }
 
     def route(self, gear: str, target: str) -> list[str]:
         """Gears to drive in one after another, up to the target, each on the other clutch than the one before.
@@ -71,7 +69,9 @@ class Halves:
         return [between, target]
 
 
-def expected(layout: Halves, schedule: ShiftSchedule, gear: str, output_speed: float, throttle: float) -> str:
+def expected(
+    layout: Halves, schedule: ShiftSchedule | ShiftMap, gear: str, output_speed: float, throttle: float
+) -> str:
     """The gear to wait on the free shaft: the neighbour whose line is nearer, in the ratio of speeds.
 
     A speed that moves on without a jump passes the middle between both lines before it crosses one of them, so the gear

@@ -19,6 +19,11 @@ BLIP, BLIP_INTEGRAL = 0.02, 0.1
 NEAR = 30.0
 
 
+def share_of(passed: float, time: float) -> float:
+    """Of a time that has passed, at most 1."""
+    return min(1.0, passed / max(time, 1e-9))
+
+
 @dataclass
 class Trend:
     """A speed [rad/s] and its slope [rad/s2] behind a filter: equation (12)."""
@@ -72,9 +77,11 @@ class Profile:
         if with_.launch_speed and not one.off:
             gain, integral = with_.launch_gain, 0.25 * with_.launch_gain**2
         wanted = target - self.slip * (1.0 - x * x * (3.0 - 2.0 * x)) + self._beyond() * x
-        error = max(wanted, self._launch(now)) - now.input_speed
+        launch = self._launch(now)
+        error = max(wanted, launch) - now.input_speed
         self._integral += integral * error * period
-        rise = one.after * self._output.slope + self.slip * rate if wanted >= self._launch(now) else 0.0
+        # while it drives off the gear runs into the input, and not before it
+        rise = one.after * self._output.slope + self.slip * rate if launch == -inf else 0.0
         return now.input_torque - one.inertia * (rise + gain * error + self._integral)
 
     def _beyond(self) -> float:
@@ -89,13 +96,15 @@ class Profile:
         return self.with_.launch_speed if not self.one.off and now.throttle > self.with_.launch_throttle else -inf
 
     def torque_factor(self, now: Measured) -> float:
-        """Of the engine: less where the input slows down under power, more where it has to be faster without."""
+        """Of the engine: less where the input slows down under power."""
         if self.to_dog and self.slip < 0.0:
             # nothing else brings the input down to a dog clutch; `blip` catches it there
             return 0.0
+        if self.with_.launch_speed and not self.one.off:
+            return 1.0
         if now.input_torque > 0.0 and self.slip < 0.0:
             return 1.0 - self.with_.reduction
-        return 1.0 + self.with_.increase if now.input_torque <= 0.0 and self.slip > 0.0 else 1.0
+        return 1.0
 
     def blip(self, period: float, now: Measured) -> float:
         """Throttle on top of that of the driver: no clutch keeps the input at the speed of a dog clutch."""

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
+from math import inf
 
 from clutchwork.shifts.exchange import Exchange
 from clutchwork.shifts.handover import Handover
@@ -18,12 +19,14 @@ class Measured:
     Parameters:
         input_speed: of the gearbox [rad/s]
         output_speed: of the gearbox [rad/s]
-        input_torque: at the input of the gearbox [N m]
+        input_torque: at the input of the gearbox, what a shift asks for included [N m]
         throttle: of the driver, 0 to 1
         slips: of elements [rad/s], those of a shift that goes on at least
         sleeves: position of dog clutches, 0 out, 1 in
         oil: temperature of the oil [K], for the inhibits of a `ShiftMap`
         grade: of the road, above 0 uphill [rad], for the same
+        demand: torque at the input that the driver asks for [N m], for a dual-clutch gearbox; none: `input_torque`
+        least, most: torque that engine and motors can give there at present [N m], for the same
     """
 
     input_speed: float
@@ -34,6 +37,9 @@ class Measured:
     sleeves: Mapping[str, float] = field(default_factory=dict)
     oil: float = 353.15
     grade: float = 0.0
+    demand: float | None = None
+    least: float = -inf
+    most: float = inf
 
 
 @dataclass(frozen=True)

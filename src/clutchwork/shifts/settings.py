@@ -20,14 +20,15 @@ class ShiftSettings:
         end_time: in which the element that closed is raised to full pressure [s]
         margin: capacity of an element that still holds, over the torque that it carries
         reduction: share by which the engine is asked to lower its torque in the inertia phase of an upshift under power
-        increase: share of its torque by which it is asked to help a downshift without power, above 0 where it can blip
+        pull: torque at the input with which elements pull it up in a downshift before the engine is asked to help [N m]
         closed_loop: whether the speed of the input is controlled to a profile; otherwise torques are those of the plan
         proportional: of the controller of that speed [1/s]
         integral: of the same [1/s2]
         sync_slip: below which an element is taken as synchronous [rad/s]
         dog_slip: slip below which a dog clutch is commanded to engage, below the one at which its teeth mesh [rad/s]
-        blip: most throttle that the engine is asked for where nothing else can bring the input to the speed of a dog
-        clutch, or unload one that opens, 0 to 1
+        cone: share of the force of a synchroniser with which a gear that waits is brought to speed, 0 to 1
+        blip: most throttle that the engine is asked for on top of the driver's, where a downshift needs more than
+        `pull`, nothing else can bring the input to the speed of a dog clutch, or one that opens must be unloaded
         adaptation: share of what a shift showed of the filling that is learnt for the next one, 0: nothing is
         longest: after which an exchange is closed whatever the slip [s]
         launch_speed: that the input keeps while an element drives off, where no converter does [rad/s]; 0: there is one
@@ -42,16 +43,17 @@ class ShiftSettings:
     torque_time: float = 0.15
     inertia_time: float = 0.35
     usual_step: float = 150.0
-    stretch: float = 2.0
+    stretch: float = 3.0
     end_time: float = 0.1
     margin: float = 1.3
     reduction: float = 0.3
-    increase: float = 0.0
+    pull: float = 40.0
     closed_loop: bool = True
     proportional: float = 25.0
     integral: float = 100.0
     sync_slip: float = 1.0
     dog_slip: float = 4.0
+    cone: float = 0.4
     blip: float = 0.4
     adaptation: float = 1.0
     longest: float = 2.5

@@ -6,32 +6,27 @@ import csv
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import field
 from itertools import pairwise
-from math import inf, isfinite
+from math import inf, isfinite, nextafter, pi
 from pathlib import Path
 from typing import TYPE_CHECKING
-
-import numpy as np
 
 from clutchwork.base.classes import dataclass
 from clutchwork.base.errors import ModelError, Problem, UseError
 from clutchwork.base.frozen import frozen
 from clutchwork.base.paths import path_of
 from clutchwork.base.quote import listed, quote
+from clutchwork.shifts.schedule import GAP, Line, Pair, at, hunting
 
 if TYPE_CHECKING:
     from clutchwork.gearbox.gearbox import Gearbox
     from clutchwork.shifts.record import Measured
 
-Pair = tuple[str, str]
-Line = Sequence[tuple[float, float]]
 # what lines are speeds of
 INPUT, OUTPUT, VEHICLE = "input", "output", "vehicle"
 # SI per unit of a speed in a table
-UNITS = {"rad/s": 1.0, "rpm": np.pi / 30.0, "1/min": np.pi / 30.0, "m/s": 1.0, "km/h": 1.0 / 3.6, "mph": 0.44704}
+UNITS = {"rad/s": 1.0, "rpm": pi / 30.0, "1/min": pi / 30.0, "m/s": 1.0, "km/h": 1.0 / 3.6, "mph": 0.44704}
 LINEAR = ("m/s", "km/h", "mph")
 FITS = 'give rad/s or rpm for "input" and "output", m/s, km/h or mph for "vehicle"'
-# least gap between the lines up and down, as a share of the speed up
-GAP = 0.02
 
 
 @dataclass(frozen=True)
@@ -66,6 +61,8 @@ class ShiftMap:
         fastest: speed of the input that no shift may lead to [rad/s]
         inhibits: what forbids upshifts
         skips: whether gears are skipped
+        gap: least gap between a line up and the one back, as a share of the speed up; below 0 where the vehicle is
+        counted on to gain as much while it shifts, as some published maps do
     """
 
     ratios: Mapping[str, float]
@@ -77,6 +74,7 @@ class ShiftMap:
     fastest: float = inf
     inhibits: tuple[Inhibit, ...] = ()
     skips: bool = True
+    gap: float = GAP
 
     def __post_init__(self) -> None:
         """Tables that never change. ModelError for lines that are missing or wrong, or with which gears hunt."""
@@ -126,9 +124,12 @@ class ShiftMap:
         if pedal >= self.kickdown and pair in self.kickdown_speeds:
             value = self.kickdown_speeds[pair]
         else:
-            points = self.lines[pair]
-            value = float(np.interp(pedal, [point[0] for point in points], [point[1] for point in points]))
+            value = at(self.lines[pair], pedal)
         return value / {INPUT: self.ratios[pair[0]], OUTPUT: 1.0, VEHICLE: self.per_output or 1.0}[self.of]
+
+    def output_speeds(self, pedal: float) -> dict[Pair, float]:
+        """Speed of the output [rad/s] at which each shift to the next gear is made at a pedal, up and down."""
+        return {pair: self.speed(pair, pedal) for pair in self.lines}
 
     def _step(self, order: Sequence[str], place: int, now: Measured) -> int:
         here, speed = order[place], now.output_speed
@@ -165,20 +166,19 @@ class ShiftMap:
     def _hunting(self) -> Iterator[Problem]:
         """An upshift must leave the output above the line down, and no line may cross the one of the next gear."""
         gears = list(self.ratios)
-        pedals = sorted({point[0] for line in self.lines.values() for point in line} | {1.0})
-        for number, (lower, higher) in enumerate(pairwise(gears)):
-            for pedal in pedals:
-                up, down = self.speed((lower, higher), pedal), self.speed((higher, lower), pedal)
-                if down > (1.0 - GAP) * up:
-                    fault = f"hunts at pedal {pedal:g}: up at {up:.4g} rad/s of the output, down at {down:.4g}"
-                    remedy = f"keep the line down {GAP:.0%} below the line up"
-                    yield Problem(f"shifts {lower}-{higher}-{lower}", "", fault, remedy=remedy)
-                    break
-                after = gears[number + 2] if number + 2 < len(gears) else ""
-                if after and self.speed((higher, after), pedal) <= up:
-                    fault = f"is above that of {higher}-{after} at pedal {pedal:g}, so that {higher} is never driven in"
-                    yield Problem(f"line {lower}-{higher}", "", fault, remedy="order the lines up by their gears")
-                    break
+        ends = {self.kickdown, nextafter(self.kickdown, 0.0)} if self.kickdown <= 1.0 else set[float]()
+        pedals = sorted({point[0] for line in self.lines.values() for point in line} | {1.0} | ends)
+        for (lower, higher), pedal, up, down in hunting(gears, pedals, self.output_speeds, self.gap):
+            fault = f"hunts at pedal {pedal:g}: up at {up:.4g} rad/s of the output, down at {down:.4g}"
+            remedy = f"keep the line down {self.gap:.0%} below the line up, or give another `gap`"
+            yield Problem(f"shifts {lower}-{higher}-{lower}", "", fault, remedy=remedy)
+        for lower, higher, after in zip(gears, gears[1:], gears[2:], strict=False):
+            crossed = [p for p in pedals if self.speed((higher, after), p) <= self.speed((lower, higher), p)]
+            if crossed:
+                fault = (
+                    f"is above that of {higher}-{after} at pedal {crossed[0]:g}, so that {higher} is never driven in"
+                )
+                yield Problem(f"line {lower}-{higher}", "", fault, remedy="order the lines up by their gears")
 
 
 def _rows(path: Path) -> list[tuple[Pair, float, float]]:

@@ -1,0 +1,249 @@
+"""Controller of a power split: engine on its line, machines, battery, mode shifts. docs/theory/shifts.md (24), (25)."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import field
+from math import inf
+from typing import TYPE_CHECKING
+
+from clutchwork.base.classes import dataclass
+from clutchwork.base.errors import UseError, near
+from clutchwork.base.quote import listed, quote
+from clutchwork.gearbox.motion import SPLIT
+from clutchwork.shifts.actuation import Actuation
+from clutchwork.shifts.exchange import ratio_of
+from clutchwork.shifts.profile import Trend
+from clutchwork.shifts.record import Measured, ShiftRecord
+from clutchwork.shifts.schedule import Line, at
+from clutchwork.shifts.settings import ShiftSettings
+from clutchwork.shifts.split_motion import SplitMotion, split_motion
+
+if TYPE_CHECKING:
+    from clutchwork.gearbox.gearbox import Gearbox
+    from clutchwork.run.trajectory import Trajectory
+    from clutchwork.shifts.plant import Plant
+    from clutchwork.shifts.torque_sources import EngineSource, TorqueSource
+    from clutchwork.stepping.simulator import Simulator
+
+# rate at which an element is brought to equal speeds [1/s], within a tenth of that of the calls
+SYNCHRONISE = 10.0
+# output speed below which no ratio is looked at, and machines brake less [rad/s]
+# and share of the ratio between two modes that is hysteresis
+SLOW, HYSTERESIS = 5.0, 0.05
+CALL = "cw.shifts.HybridController"
+
+
+@dataclass(frozen=True)
+class HybridSettings:
+    """What a hybrid controller is calibrated with.
+
+    Parameters: output_torque, of the output at full pedal over its speed, points (rad/s, N m); engine_speed, of the
+    engine over its power, points (W, rad/s); charge, of the battery that is aimed at; charge_power [W], for all that it
+    lacks; limits, of the power that the battery takes and gives at a charge [W], such as `battery.limits`; follow
+    [1/s], at which the engine comes to its speed; shift, settings of the elements.
+    """
+
+    output_torque: Line
+    engine_speed: Line
+    charge: float = 0.6
+    charge_power: float = 5e4
+    limits: Callable[[float], tuple[float, float]] = field(default=lambda _: (-inf, inf))
+    follow: float = 4.0
+    shift: ShiftSettings = field(default_factory=ShiftSettings)
+
+
+class HybridController:
+    """Drives a gearbox with machines: the engine gives the power, the machines hold its speed and drive the output.
+
+    Use it for power splits with two machines, of one mode or several. In a split the torques of both machines follow
+    from that of the output and the one that brings the engine to its speed. Where another mode fits better, the
+    machines synchronise its element, which closes without slip; they take over what the other one carries, and that
+    opens.
+
+    Parameters:
+        box: the gearbox, with the rows of its modes
+        plant: of `cw.shifts.plant_of`
+        machines: a `TorqueSource` by the name of each machine in the box, at its own shaft
+        engine: an `EngineSource`, or a `TorqueSource` of an engine whose torque is given at once
+        settings: calibration
+        mode: at the start, by default the first split of the shift table
+        prefix: name of the Transmission
+
+    UseError where a machine is missing, or the mode is no split. What it did is in `records`.
+    """
+
+    def __init__(
+        self,
+        box: Gearbox,
+        plant: Plant,
+        *,
+        machines: Mapping[str, TorqueSource],
+        engine: EngineSource | TorqueSource,
+        settings: HybridSettings,
+        mode: str = "",
+        prefix: str = "gearbox",
+    ) -> None:
+        """A controller at the start of a run."""
+        self.modes = [row for row in box.gears if box.combination(box.closed_in(row)).kind == SPLIT]
+        missing = [name for name in box.machines if name not in machines]
+        if missing or len(box.machines) != 2:
+            give = f"give sources for {listed(missing)}" if missing else f"{quote(box.name)} has not two machines"
+            raise UseError(CALL, [give])
+        self.mode = mode or next(iter(self.modes), "")
+        if self.mode not in self.modes:
+            raise UseError(CALL, [f"{quote(self.mode)} is no split{near(self.mode, self.modes, listed(self.modes))}"])
+        self.box, self.machines, self.engine, self.settings, self.prefix = box, machines, engine, settings, prefix
+        self.motions = {row: split_motion(box, box.closed_in(row), plant.inertias) for row in self.modes}
+        self.records: list[ShiftRecord] = []
+        self.phase, self.target = "drive", ""
+        self._since = self._called = 0.0
+        self._output = Trend()
+        self._do = Actuation(box, plant, prefix, {}, settings.shift.cone)
+        self._do.only(self.mode, settings.shift)
+        self._do.start()
+
+    @property
+    def shifting(self) -> bool:
+        """Whether a mode shift goes on."""
+        return self.phase != "drive"
+
+    @property
+    def commands(self) -> dict[str, float]:
+        """All commands of elements by signal."""
+        return dict(self._do.sent)
+
+    def step(self, time: float, now: Measured, charge: float) -> dict[str, float]:
+        """Commands by signal at a time [s]: of elements, machines and engine; charge, of the battery.
+
+        The throttle of `now` is the driver's, below zero where he brakes with the machines.
+        """
+        period, self._called = max(0.0, time - self._called), time
+        self._output.follow(now.output_speed, period)
+        with_, speeds = self.settings, (now.input_speed, now.output_speed)
+        wanted = now.throttle * at(with_.output_torque, abs(speeds[1]))
+        if wanted < 0.0:
+            # machines brake to rest, and not beyond
+            wanted *= min(1.0, max(0.0, speeds[1] / SLOW))
+        low, high = with_.limits(charge)
+        given = min(max((charge - with_.charge) * with_.charge_power, low), high)
+        power = max(0.0, wanted * speeds[1] - given)
+        target = at(with_.engine_speed, power)
+        if self.phase == "drive":
+            self._choose(time, target, now)
+        if self.phase == "synchronise":
+            target = self._between() * speeds[1]
+        low, high = self.engine.limits(speeds[0])
+        torque = min(max(power / max(speeds[0], 1.0), min(0.0, high)), high)
+        # what the engine does not give it drags
+        torque = max(torque, low)
+        machines = self._torques(time, target, (torque, wanted), speeds, charge)
+        self._shift(time, now)
+        made = self._do.outputs(period) | {self.engine.signal: self.engine.command(torque, speeds[0])}
+        return made | {self.machines[name].signal: value for name, value in machines.items()}
+
+    def _torques(
+        self, time: float, target: float, given: tuple[float, float], speeds: tuple[float, float], charge: float
+    ) -> dict[str, float]:
+        """Torque of each machine, blended where both modes hold."""
+        torque, wanted = given
+        limits = self.settings.limits(charge)
+        modes = {self.mode: 1.0}
+        if self.phase == "hand over":
+            share = min(1.0, (time - self._since) / self.settings.shift.torque_time)
+            modes = {self.mode: 1.0 - share, self.target: share}
+        slope, rises = self._output.slope, self.settings.follow * (target - speeds[0])
+        if self.phase != "drive":
+            # in the gear of both modes the engine goes with the output
+            rises = self._between() * slope
+            rises += SYNCHRONISE * (target - speeds[0]) if self.phase == "synchronise" else 0.0
+        found = dict.fromkeys(self.box.machines, 0.0)
+        for mode, share in modes.items():
+            motion = self.motions[mode]
+            needed = motion.inertia * rises + motion.coupling * slope - torque
+            for name, value in motion.torques(needed, wanted, self._ranges(motion, speeds), limits, speeds).items():
+                found[name] += share * value
+        return found
+
+    def _ranges(self, motion: SplitMotion, speeds: tuple[float, float]) -> dict[str, tuple[float, float]]:
+        return {name: self.machines[name].limits(motion.speed(name, speeds)) for name in self.box.machines}
+
+    def _choose(self, time: float, target: float, now: Measured) -> None:
+        """Another mode, where the ratio that the engine should have is beyond the gear between both."""
+        if abs(now.output_speed) < SLOW:
+            return
+        place, ratio = self.modes.index(self.mode), target / now.output_speed
+        for other in self.modes[place + 1 : place + 2] + self.modes[max(0, place - 1) : place]:
+            between = self._gear_between(self.mode, other)
+            higher = self.modes.index(other) > place
+            if between and (ratio < (1.0 - HYSTERESIS) * between if higher else ratio > (1.0 + HYSTERESIS) * between):
+                self.target, self.phase, self._since = other, "synchronise", time
+                record = ShiftRecord(self.mode, other, time, power_on=now.throttle >= 0.0)
+                record.phases.append((time, "synchronise"))
+                self.records.append(record)
+                return
+
+    def _gear_between(self, mode: str, other: str) -> float:
+        """Ratio with the elements of both modes closed, 0 where it is none."""
+        return ratio_of(self.box, tuple(dict.fromkeys((*self.box.closed_in(mode), *self.box.closed_in(other)))))
+
+    def _between(self) -> float:
+        return self._gear_between(self.mode, self.target)
+
+    def _shift(self, time: float, now: Measured) -> None:
+        """The element that comes closes without slip, then the other one opens without torque."""
+        if self.phase == "drive":
+            return
+        with_, old, new = self.settings.shift, self.box.closed_in(self.mode), self.box.closed_in(self.target)
+        on, off = [name for name in new if name not in old], [name for name in old if name not in new]
+        if self.phase == "synchronise":
+            for name in on:
+                self._do.carry(name, 0.0, with_)
+            filled = time - self._since >= self._do.fill_time(on, with_)
+            if filled and all(abs(now.slips[name]) < with_.sync_slip for name in on):
+                self._do.close(on, with_)
+                self._next("hand over", time)
+        elif time - self._since >= with_.torque_time:
+            self._do.open(*off)
+            self._next("drive", time)
+            self.records[-1].end, self.mode, self.target = time, self.target, ""
+
+    def _next(self, phase: str, time: float) -> None:
+        self.phase, self._since = phase, time
+        self.records[-1].phases.append((time, phase))
+
+
+def drive_hybrid(
+    sim: Simulator,
+    control: HybridController,
+    until: float,
+    *,
+    throttle: Callable[[float], float] | str,
+    charge: str = "",
+    also: Callable[[float, Simulator], Mapping[str, float]] | None = None,
+    period: float = 0.01,
+) -> Trajectory:
+    """Run a driveline with a power split under its controller, up to a time [s]; the trajectory up to there.
+
+    Parameters: throttle, of the driver over time, 0 to 1, below 0 where machines brake, or a signal; charge, signal of
+    the charge of the battery, none: it is the one that is aimed at; also, what else is set, such as brakes; period,
+    from one call of the controller to the next [s].
+    """
+    box, prefix = control.box, control.prefix
+    ends = [f"{prefix}.{member}.speed" for member in (box.input, box.output)]
+    names = [*ends, *(f"{prefix}.{element.name}.slip" for element in box.elements)]
+    set_: dict[str, float] = {}
+    while sim.time < until - 1e-9:
+        first, second, *slips = sim[names].tolist()
+        pedal = float(sim[throttle]) if isinstance(throttle, str) else float(throttle(sim.time))
+        by_element = {element.name: slip for element, slip in zip(box.elements, slips, strict=True)}
+        now = Measured(first, second, 0.0, pedal, by_element)
+        held = float(sim[charge]) if charge else control.settings.charge
+        wanted = ({} if set_ else control.commands) | control.step(sim.time, now, held)
+        wanted |= also(sim.time, sim) if also else {}
+        changed = {name: value for name, value in wanted.items() if set_.get(name) != value}
+        if changed:
+            sim.set(changed)
+            set_ |= changed
+        sim.advance(min(period, until - sim.time))
+    return sim.run

@@ -1,0 +1,154 @@
+"""Power splits under their controller: torques of the statics, mode shifts nobody feels, limits of the battery."""
+
+from __future__ import annotations
+
+from math import inf
+
+import numpy as np
+import pytest
+
+import clutchwork as cw
+from clutchwork.shifts import EngineSource, HybridController, HybridSettings, TorqueSource, drive_hybrid
+from clutchwork.shifts.split_motion import split_motion
+
+MOST, POWER = 280.0, 70e3  # N m, W
+TABLES = {
+    "full_load": [(0.0, 150.0), (150.0, 300.0), (550.0, 320.0)],
+    "motoring": [(0.0, -20.0), (600.0, -50.0)],
+}
+SPEEDS = [(0.0, 110.0), (30e3, 180.0), (100e3, 400.0)]  # W, rad/s
+
+
+def hybrid(box: cw.Gearbox, mode: str, **battery: float) -> tuple[cw.Driveline, cw.Engine, cw.Battery]:
+    d = cw.Driveline(box.name)
+    crank, out = d.shaft("crank", inertia=0.2, speed=110.0), d.shaft("out", inertia=0.02)
+    axle, body = d.shaft("axle", inertia=1.0, speed=0.0), d.mass("car", mass=2200.0)
+    gearbox = cw.Transmission("gearbox", gearbox=box, input=crank, output=out, inertia=0.03, torque=400.0, gear=mode)
+    engine = cw.Engine("engine", shaft=crank, throttle=0.0, lag=0.05, **TABLES)
+    motors = [
+        cw.ElectricMotor(name, shaft=gearbox.part(member), command=0.0, max_torque=MOST, max_power=POWER)
+        for name, member in box.machines.items()
+    ]
+    loads = {"load": cw.SupplyPower(motors[0]), "second_load": cw.SupplyPower(motors[1])}
+    cells = {"charges": (0.0, 1.0), "voltages": (280.0, 320.0), "resistances": (0.3, 0.25), "capacity": 23400.0}
+    store = cw.Battery("battery", initial_charge=0.6, **cells, **loads, **battery)
+    for part in (gearbox, engine, *motors, store):
+        d.add(part)
+    d.add(cw.Gear("final", input=out, output=axle, ratio=3.4 if "EVT1" in box.gears else 1.0))
+    d.add(cw.RollingWheel("wheels", shaft=axle, mass=body, radius=0.33))
+    d.add(cw.Vehicle("road", mass=body, drag_area=0.8, locked=False))
+    return d, engine, store
+
+
+def controlled(
+    box: cw.Gearbox, d: cw.Driveline, engine: cw.Engine, store: cw.Battery, full: float = 900.0, charge: float = 0.6
+) -> tuple[cw.Simulator, HybridController]:
+    system = d.assemble()
+    machines = {name: TorqueSource(f"{name}.command", -MOST, MOST, power=(-POWER, POWER)) for name in box.machines}
+    settings = HybridSettings([(0.0, full), (100.0, full), (300.0, 0.5 * full)], SPEEDS, charge, limits=store.limits)
+    plant = cw.shifts.plant_of(system, box)
+    made = HybridController(box, plant, machines=machines, engine=EngineSource.of(engine), settings=settings)
+    return cw.Simulator(system), made
+
+
+@pytest.mark.parametrize(("name", "mode"), [("toyota-p410", "split"), ("gm-2ml70", "EVT1"), ("gm-2ml70", "EVT2")])
+def test_torques_are_those_of_the_statics(name: str, mode: str) -> None:
+    """Virtual work over two speeds against the balance of all members, docs/theory/gearboxes.md."""
+    box = cw.Gearbox.load(name)
+    motion = split_motion(box, box.closed_in(mode), {})
+    free = dict.fromkeys(box.machines, (-inf, inf))
+    for speed, torque, output_speed, output in ((200.0, 100.0, 60.0, 500.0), (150.0, -30.0, 20.0, -200.0)):
+        ends = {"speed": speed, "torque": torque, "output_speed": output_speed}
+        point = box.operating_point(mode, **ends, output_torque=output, battery_power=None)
+        found = motion.torques(-torque, output, free, (-inf, inf), (speed, output_speed))
+        for machine, value in found.items():
+            assert value == pytest.approx(point.machine_torques[machine], rel=1e-9, abs=1e-9)
+            member = box.machines[machine]
+            assert motion.speed(machine, (speed, output_speed)) == pytest.approx(point.speeds[member], rel=1e-12)
+
+
+def test_limits_leave_what_the_input_needs() -> None:
+    """Of the output's torque as much is given as machines and battery have; the input keeps all of its own."""
+    box = cw.Gearbox.load("gm-2ml70")
+    motion, at = split_motion(box, box.closed_in("EVT1"), {}), (200.0, 60.0)
+    rng = np.random.default_rng(8)
+    for _ in range(300):
+        needed, wanted = rng.uniform(-150.0, 150.0), rng.uniform(-2000.0, 2000.0)
+        ranges = {name: (-float(rng.uniform(100, 400)), float(rng.uniform(100, 400))) for name in box.machines}
+        battery = (-float(rng.uniform(5e3, 5e4)), float(rng.uniform(5e3, 5e4)))
+        found = motion.torques(needed, wanted, ranges, battery, at)
+        power = sum(found[name] * motion.speed(name, at) for name in found)
+        at_input, at_output = (sum(motion.machines[n][k] * found[n] for n in found) for k in (0, 1))
+        inside = all(ranges[name][0] <= found[name] <= ranges[name][1] for name in found)
+        assert inside
+        # every other torque of the output with that of the input: none that is allowed is closer to the wanted one
+        ways = np.array([[motion.machines[n][k] for n in found] for k in (0, 1)])
+        closest = inf
+        for output in np.linspace(-2500.0, 2500.0, 501):
+            tried = dict(zip(found, np.linalg.solve(ways, [needed, output]), strict=True))
+            fits = all(ranges[n][0] <= tried[n] <= ranges[n][1] for n in tried)
+            if fits and battery[0] <= sum(tried[n] * motion.speed(n, at) for n in tried) <= battery[1]:
+                closest = min(closest, abs(output - wanted))
+        if closest < inf:
+            assert at_input == pytest.approx(needed, abs=1e-9)
+            assert battery[0] - 1e-6 <= power <= battery[1] + 1e-6
+            assert abs(at_output - wanted) <= closest + 1e-6
+
+
+def test_mode_shifts_up_and_down() -> None:
+    """Through second gear, in which both modes meet: no slip where C2 closes, no torque where C1 opens, no jerk."""
+    box = cw.Gearbox.load("gm-2ml70")
+    d, engine, store = hybrid(box, "EVT1", max_current=150.0, max_charging_current=100.0)
+    sim, control = controlled(box, d, engine, store)
+    run = drive_hybrid(sim, control, 45.0, throttle=lambda t: 0.5 if t < 15.0 else -0.5, charge="battery.charge")
+    assert [(one.before, one.after) for one in control.records] == [("EVT1", "EVT2"), ("EVT2", "EVT1")]
+    # docs/theory/jerk.md: what is felt
+    time = np.arange(0.5, 44.5, 1e-3)
+    felt = np.abs(cw.shifts.jerk(np.interp(time, run.time, run["car.speed"]), 1e-3))
+    for record, (on, off) in zip(control.records, (("C2", "C1"), ("C1", "C2")), strict=True):
+        assert record.reached
+        begin = record.phases[0][0]
+        closes = next(at for at, state in record.phases if state == "hand over")
+        heat = run.at(np.array([begin, record.end + 0.2]))[f"gearbox.{on}.heat"]
+        # J: a hundredth of a power shift's
+        assert heat[1] - heat[0] < 50.0
+        ratio = run.at(np.array([closes + 0.1]))
+        assert ratio["crank.speed"][0] / ratio["out.speed"][0] == pytest.approx(box.ratios["2"], rel=1e-4)
+        # what is left of its torque when it opens: the lag of the engine, and inertias that statics leave out
+        carried = run.at(np.array([begin, record.end]))[f"gearbox.{off}.torque"]
+        assert abs(carried[1]) < 0.1 * max(abs(carried[0]), 300.0)
+        around = (time > begin) & (time < record.end + 0.3)
+        assert np.max(felt[around]) < 10.0
+    assert run["battery.unserved"][-1] == pytest.approx(0.0, abs=1e-6)
+    assert abs(run.energy.residual) < 1e-6 * run.energy.turnover
+
+
+def test_a_weak_battery_is_kept_within_its_limits() -> None:
+    """5 A out, 2 A in: nothing is asked beyond, where the drive takes more of a strong one, and the engine helps."""
+    box = cw.Gearbox.load("toyota-p410")
+    speeds, most = [], []
+    for limits in ({"max_current": 5.0, "max_charging_current": 2.0}, {"max_current": 150.0}):
+        d, engine, store = hybrid(box, "split", **limits)
+        sim, control = controlled(box, d, engine, store, 1800.0, charge=0.3)
+        run = drive_hybrid(sim, control, 12.0, throttle=lambda t: 0.6 if t < 8.0 else -0.2, charge="battery.charge")
+        power = sum(run[f"{name}.electric_power"] for name in box.machines)
+        low, high = store.limits(0.6)
+        # speeds move on for a period of the controller
+        assert low - 0.03 * POWER < np.min(power) < np.max(power) < high + 0.03 * POWER
+        most.append(float(np.max(power)))
+        speeds.append(float(run.at(np.array([8.0]))["car.speed"][0]))
+        assert abs(run["battery.unserved"][-1]) < 0.01 * run.energy.turnover
+    assert most[1] > 5.0 * most[0]
+    assert speeds[0] == pytest.approx(speeds[1], rel=0.05)
+
+
+def test_what_is_wrong_is_said() -> None:
+    box = cw.Gearbox.load("gm-2ml70")
+    d, engine, _ = hybrid(box, "EVT1")
+    plant = cw.shifts.plant_of(d.assemble(), box)
+    more = {"engine": EngineSource.of(engine), "settings": HybridSettings([(0.0, 900.0)], SPEEDS)}
+    with pytest.raises(cw.UseError, match="give sources for MGB"):
+        HybridController(box, plant, machines={"MGA": TorqueSource("MGA.command", -1.0, 1.0)}, **more)
+    both = {name: TorqueSource(f"{name}.command", -1.0, 1.0) for name in box.machines}
+    with pytest.raises(cw.UseError, match="'2' is no split"):
+        HybridController(box, plant, machines=both, mode="2", **more)
