@@ -138,6 +138,8 @@ def constructor(cls: Any, package: Package) -> Iterator[str]:
             yield "        *,"
         default = "" if item.default is MISSING else f" = {item.default!r}"
         yield f"        {name}: {given(item)}{default},"
+    if getattr(cls, "takes_numbers", False):
+        yield "        **numbers: Number,"
     yield "    ) -> None: ..."
 
 

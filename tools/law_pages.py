@@ -113,7 +113,8 @@ def law_of(kind: str) -> Any:
     if isinstance(law, StribeckCurve):
         # the same curve, whose exponent can be turned
         law = replace(law, shape="power")
-    return replace(law, temperature=TEMPERATURE) if any(specs(type(law), "signal")) else law
+    warm = any(specs(type(law), "signal")) and law.reads("temperature")
+    return replace(law, temperature=TEMPERATURE) if warm else law
 
 
 def driveline(kind: str) -> cw.Driveline:

@@ -63,6 +63,21 @@ bool same_counts(const System& a, const System& b) {
   return counts(a) == counts(b);
 }
 
+/// Whether the laws of contact c compute the same formula, where they have one.
+bool same_formula(const System& a, const System& b, std::int64_t c) {
+  bool same = true;
+  visit_law(a.contact_law[c], [&](auto tag) {
+    if constexpr (ProgrammedLaw<typename decltype(tag)::type>) {
+      visit_law_curves(a.contact_law[c], [&](int at) {
+        const double* range = a.params + a.contact_law_param[c] + at;
+        const std::int64_t first = 3 * std::int64_t(range[0]), n = 3 * std::int64_t(range[1]);
+        same = same && std::memcmp(a.points + first, b.points + first, std::size_t(n) * sizeof(double)) == 0;
+      });
+    }
+  });
+  return same;
+}
+
 /// Whether a step reads the same places in two models.
 bool same_structure(const System& a, const System& b) {
   if (!same_counts(a, b)) return false;
@@ -84,6 +99,7 @@ bool same_structure(const System& a, const System& b) {
   auto check = [&](std::int64_t at) { same = same && a.params[at] == b.params[at]; };
   if (same)
     visit_fixed(a, [&](std::int64_t at) { check(at), check(at + 1); }, [&](std::int64_t at, int) { check(at); });
+  for (std::int64_t c = 0; same && c < a.contacts; ++c) same = same_formula(a, b, c);
   return same;
 }
 

@@ -81,13 +81,15 @@ inline bool choices_fit(const System& s) {
   return good;
 }
 
-/// Whether the tables of the law of a contact fit each other.
+/// Whether the tables of the law of a contact fit each other, and the words of its formula read what is there.
 inline bool tables_fit(const System& s, std::int64_t contact) {
   return visit_law(s.contact_law[contact], [&](auto tag) {
     using L = typename decltype(tag)::type;
     const auto& p =
         *reinterpret_cast<const typename L::template Params<double>*>(s.params + s.contact_law_param[contact]);
     if constexpr (FittedLaw<L>) return L::fits(p);
+    if constexpr (ProgrammedLaw<L>)
+      return L::is_sound(p, s.points, s.n_params - s.contact_law_param[contact] - param_count<L>);
     return true;
   });
 }

@@ -55,6 +55,28 @@ def test_tunable_parameters_change_while_it_runs(six_speed: Fmu) -> None:
             assert run.get(SEEN) == [sim[name] for name in SEEN]
 
 
+@pytest.mark.parametrize("states", [False, True])
+def test_formulas_have_the_bits_of_a_simulator(made: Any, states: bool) -> None:
+    """Their numbers are parameters."""
+    d = cw.Driveline("formula")
+    engine, load = d.shaft("engine", inertia=0.2, speed=100.0), d.shaft("load", inertia=0.8)
+    numbers: dict[str, Any] = {"mu": 0.25, "f": 0.05, "w": "30 rpm"}
+    law: cw.Law = cw.Formula("mu + f*exp(-v/w)", **numbers)
+    if states:
+        rates = {"z": "s*(v - abs(v)*z/(mu + f*exp(-abs(v)/w)))"}
+        law = cw.DynamicFormula("z + 0.001*v", rates=rates, at_rest="mu + f", s="500 1/rad", **numbers)
+    ramp = cw.Ramp(height=400.0, duration=0.3)
+    d.add(cw.Clutch("c", base=engine, follower=load, friction=law, gain=0.4, normal_force=ramp))
+    fmu, seen = made(d), ["engine.speed", "c.torque", "c.heat"]
+    assert {"c.friction.mu", "c.friction.f", "c.friction.w"} <= set(parameters(fmu, "tunable"))
+    sim = cw.Simulator(d.assemble().changed({"c.friction.mu": 0.21}))
+    with fmu.running({"c.friction.mu": 0.21}) as run:
+        for k in range(20):
+            sim.advance_to(0.05 * (k + 1))
+            run.step(0.05 * k, 0.05 * (k + 1) - 0.05 * k)
+            assert run.get(seen) == [sim[name] for name in seen]
+
+
 def test_fixed_parameters_and_results_cannot_be_set_later(six_speed: Fmu) -> None:
     run = six_speed.instance()
     run.begin(START)

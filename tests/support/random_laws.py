@@ -10,6 +10,7 @@ import numpy as np
 from clutchwork.declare.schema import Spec, inputs, specs
 from clutchwork.model.fields import law_problems
 from clutchwork.model.numbers import At
+from support.random_formulas import drawn
 
 # points along every axis of a table
 POINTS = 4
@@ -18,7 +19,7 @@ POINTS = 4
 def random_law(cls: Any, rng: np.random.Generator) -> Any:
     """A law of a class without a mistake."""
     while True:
-        law = cls(**_fields(cls, rng))
+        law = cls(**(drawn(rng, cls.sticks) if cls.takes_numbers else _fields(cls, rng)))
         if not any(law_problems(law, At("law", ""))):
             return law
 

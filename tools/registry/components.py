@@ -6,7 +6,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import Any
 
-from clutchwork.declare.schema import COMPILED_ROLES, REGISTRY, Role, Spec, inputs, kinds, specs
+from clutchwork.declare.schema import COMPILED_ROLES, REGISTRY, WORDS, Role, Spec, inputs, kinds, specs
 
 # role: folder of the files, namespace of the headers, and concept that they fulfil
 FOLDER = {"torque": "elements", "contact": "elements", "law": "laws", "flow": "elements", "process": "elements"}
@@ -123,7 +123,7 @@ class Component:
     def fields(self) -> list[Field]:
         """Its parameters in order."""
         found: list[Field] = []
-        for item, spec in specs(self.cls, "param", "curve", "numbers"):
+        for item, spec in specs(self.cls, *WORDS):
             found.append(Field(item.name, spec, found[-1].offset + found[-1].size if found else 0))
         return found
 

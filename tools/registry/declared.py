@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator
 
 from clutchwork.declare.schema import Role
+from clutchwork.laws.bases.program import MOST_REGISTERS, OPERATIONS, PER_WORD
 from registry.components import Component, components, cpp_name, enum_name
 
 FILE = "declared.gen.hpp"
@@ -20,6 +21,10 @@ def lines() -> Iterator[str]:
         yield f"enum class {enum_name(field)} : int {enumerators(words)};"
         yield f"template <> inline constexpr int words<{enum_name(field)}> = {len(words)};"
     yield "}"
+    yield "/// What a formula is made of: its operations, and the numbers that it may have at once."
+    yield f"enum class Operation : int {enumerators(OPERATIONS)};"
+    yield f"inline constexpr int operations = {len(OPERATIONS)}, words_per_operation = {PER_WORD};"
+    yield f"inline constexpr int most_registers = {MOST_REGISTERS};"
     yield "/// Base of every component: its inputs and states by name, and how many it has."
     yield "namespace declared {"
     for component in components():

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from clutchwork.assembly.inputs import plain_signal
 from clutchwork.declare.node import DIRECT, Component, Node, ThermalNode, is_reference
-from clutchwork.declare.schema import Role, inputs, specs
+from clutchwork.declare.schema import WORDS, Role, inputs, specs
 from clutchwork.model.parts import is_open, is_stop, role
 from clutchwork.model.pools import Pools
 from clutchwork.model.structure import follows_load
@@ -146,7 +146,7 @@ def _parameters(where: Numbered, old: Component, new: Component) -> Iterator[Pat
 
 def _pool(where: Numbered, offset: int, old: Any, new: Any) -> Iterator[Patch]:
     """Parameters from an offset on; curves keep their place and length."""
-    own = specs(type(old), "param", "curve", "numbers")
+    own = specs(type(old), *WORDS)
     if all(getattr(old, item.name) is getattr(new, item.name) for item, _ in own):
         return
     pools, params = Pools(), where.arrays["params"]

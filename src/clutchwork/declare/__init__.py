@@ -38,6 +38,7 @@ from clutchwork.declare.schema import data as data
 from clutchwork.declare.schema import elements as elements
 from clutchwork.declare.schema import family as family
 from clutchwork.declare.schema import flag as flag
+from clutchwork.declare.schema import formula as formula
 from clutchwork.declare.schema import function as function
 from clutchwork.declare.schema import law as law
 from clutchwork.declare.schema import named as named

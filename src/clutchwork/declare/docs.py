@@ -17,6 +17,7 @@ SORTS = {
     "option": "setting",
     "law": "friction law",
     "thermal": "thermal port",
+    "formula": "expression",
     "named": "numbers by name",
     "elements": "elements by name",
     "data": "name, file or table",
@@ -49,7 +50,7 @@ def _sort(spec: Spec) -> str:
 
 
 def _unit(spec: Spec) -> str:
-    if spec.what == "law" or spec.flag or spec.choices:
+    if spec.what in ("law", "formula") or spec.flag or spec.choices:
         return ""
     unit = f"{spec.unit_x} -> {spec.unit}" if spec.what == "curve" else spec.unit
     return " or ".join(dict.fromkeys((unit.replace("*", "of its input"), *spec.units))) if unit else ""

@@ -18,6 +18,7 @@ def wanted(spec: Spec, unit: str) -> str:
         "curve": f"points in [{spec.unit_x}] and [{unit}]",
         "numbers": f"a list of numbers{within(unit)}",
         "text": "a string",
+        "formula": "an expression",
         "named": f"a table of numbers{within(unit)} by name",
         "elements": "a table of elements by name, each a table of its fields",
         "data": "an object, a name, the path of a file, or a table",

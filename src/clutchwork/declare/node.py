@@ -386,6 +386,7 @@ class Law(Declared):
     states: ClassVar[tuple[State, ...]] = ()
 
     sticks: ClassVar[bool] = True
+    takes_numbers: ClassVar[bool] = False  # a call may have numbers of any name
 
     # what a law has unless it declares a field of that name
     static = cast("Coefficients | None", None)
@@ -406,8 +407,21 @@ class Law(Declared):
         return []
 
     def sliding(self) -> float | None:
-        """Kinetic coefficient at vanishing slip; None: the compiled core is asked."""
+        """Kinetic coefficient at vanishing slip; None: the compiled core is asked, or the law says what is wrong."""
         return None
+
+    @classmethod
+    def declared_by(cls, given: Mapping[str, Any]) -> type:  # noqa: ARG003, most have one declaration
+        """The declaration whose fields a call has; another one where a law may have numbers of any name."""
+        return cls
+
+    def reads(self, name: str) -> bool:  # noqa: ARG002, most read all
+        """Whether it reads an input, such as its temperature."""
+        return True
+
+    def code(self, field: str) -> Sequence[tuple[float, float, float]]:
+        """The words that the core gets for an expression."""
+        raise NotImplementedError
 
     def _repr_mimebundle_(self, **_: Any) -> dict[str, Any]:
         from clutchwork.base.rich import bundle

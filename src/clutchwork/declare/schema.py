@@ -53,7 +53,7 @@ class Way:
 class Spec:
     """Metadata of one declared field."""
 
-    # "port" | "thermal" (port) | "param" | "curve" | "numbers" | "signal" | "law" of the core;
+    # "port" | "thermal" (port) | "param" | "curve" | "numbers" | "formula" | "signal" | "law" of the core;
     # "alternative" (to another signal) | "option" | "text" | "function" for Python alone;
     # "named" (numbers), "elements" and "data", tables that a composite reads
     what: str
@@ -252,6 +252,11 @@ def signal(
     return _field(Spec(what, unit, doc, default is None, **ranges, **ways, units=units, example=example), default)
 
 
+def formula(doc: str, *, default: None = MISSING, kw_only: bool = True, example: Any = None) -> Any:  # type: ignore[assignment]
+    """An expression, or several by name: a `Curve` of the C++ `Params` with the words that the law makes of it."""
+    return _field(Spec("formula", "1", doc, default is None, example=example), default, kw_only)
+
+
 def law(doc: str, *, default: object = MISSING) -> Any:
     """The friction law of a contact."""
     return _field(Spec("law", "1", doc), default)
@@ -328,7 +333,7 @@ def _check_work(cls: Any) -> None:
 @dataclass_transform(
     kw_only_default=True,
     frozen_default=True,
-    field_specifiers=(port, param, flag, choice, curve, numbers, signal, law, option),
+    field_specifiers=(port, param, flag, choice, curve, numbers, formula, signal, law, option),
 )
 def family(cls: C) -> C:
     """Freeze fields that several declarations share, as a base that is itself none."""
@@ -358,6 +363,7 @@ def _check_ports(cls: type) -> None:
         choice,
         curve,
         numbers,
+        formula,
         signal,
         law,
         option,
@@ -396,6 +402,8 @@ def component(
 
 
 PORTS = ("port", "thermal")
+# sorts of fields that are words of the core
+WORDS = ("param", "curve", "numbers", "formula")
 Declared: TypeAlias = "tuple[tuple[Field[Any], Spec], ...]"
 Inputs: TypeAlias = "tuple[tuple[tuple[str, ...], Spec], ...]"
 
@@ -442,7 +450,7 @@ def schema_text() -> str:
 
 def compiled_text(cls: Any) -> str:
     """What the compiled core must agree on of one declaration."""
-    names = ",".join(_field_text(f.name, s) for f, s in specs(cls, "param", "curve", "numbers", "signal"))
+    names = ",".join(_field_text(f.name, s) for f, s in specs(cls, *WORDS, "signal"))
     sort = "" if cls.role is not Role.LAW else " sticks" if cls.sticks else " compliant"
     ways = "".join(f" {way.name}" for way in cls.ways) if len(cls.ways) > 1 else ""
     return f"{cls.role.value} {cls.kind} {names} {len(cls.states)}{sort}{ways}"

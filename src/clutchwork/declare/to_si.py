@@ -25,7 +25,7 @@ NUMBERS = frozenset((float, int, bool))
 # sorts of fields that hold numbers
 READ = ("param", "option", "signal", "alternative", "curve", "numbers")
 # and those that hold tables
-TABLES = ("named", "elements", "data")
+TABLES = ("named", "elements", "data", "formula")
 
 
 class TargetUnit(NamedTuple):

@@ -15,6 +15,7 @@ from clutchwork.declare.schema import specs
 from clutchwork.driveline.driveline import Driveline
 from clutchwork.elements.bearing_friction import BearingFriction
 from clutchwork.elements.prescribed_speed import PrescribedSpeed
+from clutchwork.laws.bases.formula import TEMPERATURES
 from clutchwork.model.pools import Pools
 from clutchwork.plot import declared
 from clutchwork.plot.figure import figure_of
@@ -25,6 +26,7 @@ from clutchwork.signals.table import Table
 
 if TYPE_CHECKING:
     from clutchwork.declare.node import Law
+    from clutchwork.declare.schema import Spec
     from clutchwork.plot.canvas import Picture
 
 Array = NDArray[np.float64]
@@ -35,6 +37,8 @@ POINTS = 241
 # a law with states is asked at fewer slips: each is held until the states have settled
 HELD, HOLD, TURN = 25, 2.0, 20.0  # slips, s and rad of each at least
 SETTLED = 1e-3
+HAND_WARM = 300.0  # K, where none counts
+FORMULA = [(kelvin, 0.0) for kelvin in TEMPERATURES]  # of a formula over the temperature
 SIZE = (130.0, 55.0)  # mm
 
 
@@ -66,15 +70,22 @@ def _asked(law: Law) -> Any:
 
 
 def _temperatures(law: Law) -> Mapping[str, list[float]]:
-    """Temperatures at which a law is drawn: the one that it holds, or some of its table [K]."""
-    if not specs(type(law), "signal"):
-        return {"": []}
+    """Inputs at which a law is drawn: the temperature that it holds, or some of its table [K], and its pressure."""
+    known = specs(type(law), "signal")
+    rest = [_constant(getattr(law, item.name), spec) for item, spec in known if item.name != "temperature"]
+    if not known or not law.reads("temperature"):
+        return {"": [HAND_WARM, *rest] if known else []}
     given = getattr(law, "temperature", None)
     if isinstance(given, Real):
-        return {f"{float(given):g} K": [float(given)]}
-    known = getattr(law, "temperatures", None) or [point[0] for point in getattr(law, "kinetic", ())]
-    chosen = sorted({float(known[0]), float(known[len(known) // 2]), float(known[-1])})
-    return {f"{kelvin:g} K": [kelvin] for kelvin in chosen}
+        return {f"{float(given):g} K": [float(given), *rest]}
+    warm = getattr(law, "temperatures", None) or [point[0] for point in law.kinetic or FORMULA]  # type: ignore[union-attr, index]
+    chosen = sorted({float(warm[0]), float(warm[len(warm) // 2]), float(warm[-1])})
+    return {f"{kelvin:g} K": [kelvin, *rest] for kelvin in chosen}
+
+
+def _constant(value: Any, spec: Spec) -> float:
+    """An input as a number."""
+    return float(value) if isinstance(value, Real) else spec.otherwise or 0.0
 
 
 def _largest(law: Law) -> float:

@@ -151,7 +151,7 @@ class ValueReader:
             return {name: self._number(number, spec, at.inner(name, spec.unit)) for name, number in value.items()}
         if spec.what == "data" and is_path(value):
             return str(Path(self.folder, value))
-        if spec.what in ("text", "elements", "named", "data") or spec.flag or spec.choices:
+        if spec.what in ("text", "formula", "elements", "named", "data") or spec.flag or spec.choices:
             return value
         return self._number(value, spec, at)
 
@@ -255,9 +255,11 @@ class ValueReader:
         if not isinstance(kind, str) or kind not in known:
             remedy = f"known types: {listed(known)}"
             return self._report(at.inner("type"), "is an unknown type" + near(kind, known), quote(kind), remedy)
-        before = len(self.problems)
-        values = self._values(known[kind], value, at, taken)
-        return self._made(known[kind](**values)) if len(self.problems) == before else BROKEN
+        before, cls = len(self.problems), known[kind]
+        if role is Role.LAW:
+            cls = cls.declared_by({key: item for key, item in value.items() if key not in taken})
+        values = self._values(cls, value, at, taken)
+        return self._made(cls(**values)) if len(self.problems) == before else BROKEN
 
     def _made(self, thing: T) -> T:
         """A declared object whose values were checked as they were read."""

@@ -81,6 +81,8 @@ class Writer:
             if isinstance(value, str) and not self.embed:
                 return self._relative(Path(value)) if is_path(value) else value
             return thing.content(name)
+        if name in _units_of_numbers(thing):
+            return f"{float(value)!r} {spec.unit}"
         return self._value(value, spec, at)
 
     def _table(self, table: Mapping[str, Any], kind: str | None, at: At) -> dict[str, Any]:
@@ -101,6 +103,8 @@ class Writer:
             message = "is a Python function, which a model file cannot hold"
             self.problems.append(at.problem(message, remedy="give a table, or keep the model in Python"))
             return None
+        if spec.what == "formula" and isinstance(value, Mapping):
+            return dict(value)
         if spec.what == "curve" and not isinstance(value, Real):
             return [[float(x), float(y)] for x, y in value]
         if spec.what == "numbers":
@@ -132,6 +136,11 @@ class Writer:
         if self.folder is None or full.is_absolute():
             return str(full)
         return Path(os.path.relpath(full, self.folder)).as_posix()
+
+
+def _units_of_numbers(thing: Any) -> tuple[str, ...]:
+    """Names of the numbers of a formula that have a unit, which stands nowhere but beside them."""
+    return tuple(one.name for one in getattr(thing, "numbers", ()) if one.unit != "1")
 
 
 def _reference(value: Any) -> Any:

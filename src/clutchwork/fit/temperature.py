@@ -22,7 +22,7 @@ _REMEDY = "give the measured temperature [K], a number or a row"
 def at_temperature(samples: Measurement, law: Law) -> Measurement:
     """Samples with the temperature that the law needs: the measured one, else the number that the law holds."""
     kind = type(law).__name__
-    needed = [name for names, _ in inputs(type(law)) for name in names[:1]]
+    needed = [name for names, _ in inputs(type(law)) for name in names[:1] if law.reads(name)]
     for name in needed:
         if name != TEMPERATURE:
             raise FitError(

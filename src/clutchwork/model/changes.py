@@ -36,7 +36,7 @@ from clutchwork.model.thermal import NODE_FIELDS as THERMAL_FIELDS
 from clutchwork.model.thermal import node_kind, thermal_problems
 
 # sorts of fields that are joined, named or called, and make another driveline
-FIXED = ("port", "thermal", "text", "function", "named", "elements", "data")
+FIXED = ("port", "thermal", "text", "formula", "function", "named", "elements", "data")
 SIGNALS = ("signal", "alternative")
 MOST_OWN = 6
 # "c1.pressure.values[3]"

@@ -254,6 +254,8 @@ def _peak(law: Law, at: At) -> Iterator[Problem]:
     # a law over the temperature compares its tables itself
     if static is not None and not isinstance(static, Real):
         return
+    if kinetic is None and inputs(type(law)):
+        return
     if static is None or kinetic is None:
         kinetic, static = coefficients(law, 0.0)
     # equal values may differ by round-off
@@ -265,6 +267,12 @@ def _peak(law: Law, at: At) -> Iterator[Problem]:
 def _text(value: Any, spec: Spec, at: At) -> Iterator[Problem]:
     if not (value is None and spec.optional) and (not isinstance(value, str) or not value):
         yield at.problem("must be a string", value=quote(value), remedy=spec.doc)
+
+
+def _formula(value: Any, spec: Spec, at: At) -> Iterator[Problem]:
+    """The law says what is wrong with one."""
+    if value is None and not spec.optional:
+        yield at.problem("is missing", remedy=f"give an expression: {spec.doc}")
 
 
 def _function(value: Any, spec: Spec, at: At) -> Iterator[Problem]:
@@ -310,6 +318,7 @@ CHECKS: dict[str, Callable[[Any, Spec, At], Iterator[Problem]]] = {
     "alternative": signal_problems,
     "law": _law,
     "text": _text,
+    "formula": _formula,
     "function": _function,
     "named": _named,
     "elements": _tables,

@@ -12,7 +12,7 @@ import numpy as np
 
 from clutchwork.base.classes import dataclass
 from clutchwork.declare.core import core, number
-from clutchwork.declare.schema import specs
+from clutchwork.declare.schema import WORDS, specs
 
 if TYPE_CHECKING:
     from clutchwork.declare.node import Law
@@ -30,16 +30,23 @@ class Pools:
     def add(self, component: Any, path: str) -> int:
         """Append the parameters of a component; the offset of the first one."""
         offset = len(self.params)
-        for item, spec in specs(type(component), "param", "curve", "numbers"):
+        for item, spec in specs(type(component), *WORDS):
             value = getattr(component, item.name)
             if spec.what == "param":
                 self.places[f"{path}.{item.name}"] = len(self.params)
                 self.params.append(_number(spec, value))
             else:
-                points = _points(value) if spec.what == "curve" else _plain((0.0,) if value is None else value)
+                points = _words(component, item.name, spec, value)
                 self.params += [float(len(self.points)), float(len(points))]
                 self.points += points
         return offset
+
+
+def _words(component: Any, name: str, spec: Spec, value: Any) -> list[tuple[float, float, float]]:
+    """The points of a field."""
+    if spec.what == "formula":
+        return list(component.code(name))
+    return _points(value) if spec.what == "curve" else _plain((0.0,) if value is None else value)
 
 
 def _number(spec: Spec, value: Any) -> float:

@@ -132,7 +132,7 @@ def reference_problems(component: Component, whole: Component, known: Referents)
                 written = whole if hasattr(whole, item.name) else component
                 place = At(path_of(written), quantity).inner(item.name, spec.unit)
                 yield from _reference(value, spec, place, component, known)
-            elif value is None and spec.unit == "K" and thing is law:
+            elif value is None and spec.unit == "K" and law is not None and thing is law and law.reads(item.name):
                 yield from _temperature(component, At(path_of(component), quantity).inner(item.name, spec.unit))
 
 

@@ -28,6 +28,9 @@ COUNTERPARTS: dict[str, Callable[[Any], Law]] = {
     "naive_sign": lambda law: NaiveSign(_curve(law)),
     "dahl": lambda law: Dahl(law.kinetic, law.stiffness, law.exponent),
     "lugre": lambda law: LuGre(_curve(law), law.stiffness, law.damping),
+    "dynamic_formula": lambda law: LuGre(
+        Curve(law.static, law.kinetic, law.speed, "gaussian", 2.0, law.viscous), law.stiffness, law.damping
+    ),
     "elastoplastic": lambda law: ElastoPlastic(_curve(law), law.stiffness, law.damping, law.elastic, law.plastic),
     "leuven": lambda law: Leuven(_curve(law), _elements(law), law.order, law.damping),
     "gms": lambda law: GMS(_curve(law), _elements(law), law.attraction, law.damping),

@@ -23,6 +23,7 @@ LAWS: dict[str, cw.Law] = {
     "stribeck lorentz": cw.Stribeck(**CURVE, shape="lorentz"),
     "stribeck power": cw.Stribeck(**CURVE, shape="power", exponent=0.8),
     "stribeck viscous": cw.Stribeck(static=KINETIC, kinetic=KINETIC, speed=SPEED, viscous=VISCOUS),
+    "formula": cw.Formula("mu + fall*exp(-v/fast)", mu=KINETIC, fall=FALL, fast=SPEED),
     "karnopp": cw.Karnopp(**CURVE, shape="tustin", band=BAND),
 }
 
@@ -61,5 +62,6 @@ TO_REST: dict[str, Callable[[float], float]] = {
     "stribeck lorentz": lorentz,
     "stribeck power": by_quadrature(0.8),
     "stribeck viscous": lambda v: log(1 + VISCOUS * v / KINETIC) / VISCOUS,
+    "formula": tustin,
     "karnopp": lambda v: tustin(v) - tustin(BAND),
 }

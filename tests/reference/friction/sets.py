@@ -21,11 +21,20 @@ MANY = (
 )  # fmt: skip
 FEW = ((1e-5, 0.15), (5e-5, 0.25), (1e-4, 0.3), (2e-4, 0.3))
 
+# LuGre friction as a formula
+BENDING = "v - abs(v)*z/(kinetic + (static - kinetic)*exp(-(v/speed)**2))"
+WRITTEN: dict[str, Any] = {
+    "expression": f"z + damping*({BENDING}) + viscous*v",
+    "rates": {"z": f"stiffness*({BENDING})"},
+    "at_rest": "static",
+}
+
 DRIFT: dict[str, cw.Law] = {
     "tanh": cw.Tanh(kinetic=0.7, speed=1e-3),
     "regularised_stribeck": cw.RegularisedStribeck(static=1.0, kinetic=0.7, speed=0.01, width=1e-3),
     "dahl": cw.Dahl(kinetic=0.7, stiffness=1e4),
     "lugre": cw.LuGre(**BRISTLE),
+    "dynamic_formula": cw.DynamicFormula(**WRITTEN, **BRISTLE),
     "elastoplastic": cw.ElastoPlastic(**BRISTLE, elastic=4.9e-5),
     "leuven": cw.Leuven(**CURVE, elements=FEW, order=50.0, damping=200.0),
     "gms": cw.GMS(**CURVE, elements=FEW),
@@ -67,6 +76,7 @@ PASSIVE: dict[str, cw.Law] = {
     "dahl": DRIFT["dahl"],
     "dahl square": OTHERS["dahl square"],
     "lugre": cw.LuGre(**GENTLE),
+    "dynamic_formula": cw.DynamicFormula(**WRITTEN, **GENTLE),
     "elastoplastic": cw.ElastoPlastic(**GENTLE, elastic=4.9e-5),
     "leuven": cw.Leuven(**CURVE, elements=FEW, order=20.0),
     "leuven linear": cw.Leuven(**CURVE, elements=FEW, order=1.0, damping=0.9),
@@ -94,6 +104,13 @@ SHIFT: dict[str, dict[str, Any]] = {
     "regularised_stribeck": FALLING | {"width": 0.05},
     "naive_sign": FALLING,
     "lugre": STIFF,
+    "formula": {"expression": "mu + fall*exp(-v/speed)", "mu": 0.065, "fall": 0.075, "speed": FALLING["speed"]},
+    "dynamic_formula": {
+        **{key: one for key, one in STIFF.items() if key != "shape"},
+        "expression": "z + damping*(v - abs(v)*z/(kinetic + (static - kinetic)*exp(-abs(v)/speed)))",
+        "rates": {"z": "stiffness*(v - abs(v)*z/(kinetic + (static - kinetic)*exp(-abs(v)/speed)))"},
+        "at_rest": "static",
+    },
     "elastoplastic": STIFF | {"elastic": 3e-5},
     "leuven": FALLING | {"elements": LAYERS, "order": 20.0},
     "gms": FALLING | {"elements": LAYERS},

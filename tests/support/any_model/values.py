@@ -10,6 +10,7 @@ from typing import Any
 import numpy as np
 
 from clutchwork.declare.schema import REGISTRY, Role, Spec, inputs, specs
+from support import random_formulas
 
 Rng = np.random.Generator
 Plain = dict[str, Any]
@@ -152,6 +153,8 @@ def law(rng: Rng, sticks: bool | None = None) -> Plain:
     kind = "coulomb" if rng.random() < 0.3 and sticks is not False else str(rng.choice(kinds))
     made: Plain = {"type": kind}
     cls = REGISTRY[Role.LAW][kind]
+    if cls.takes_numbers:
+        return made | random_formulas.drawn(rng, cls.sticks)
     factors: dict[str, float] = {}
     for item, spec in specs(cls):
         if item.default is not MISSING and rng.random() < 0.6:

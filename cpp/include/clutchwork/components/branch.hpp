@@ -51,8 +51,12 @@ CLUTCHWORK_INLINE S bending_torque(const Workspace<T>& ws, const Branch<T>& b, c
     if constexpr (CompliantLaw<L> && L::states <= Room) {
       const auto& p = *reinterpret_cast<const typename L::template Params<T>*>(b.law_params);
       const At<S> at{rate, own, law_input, b.piece, points_of(ws)};
-      if constexpr (L::states > 0) L::state_rates(p, at, rates);
-      return L::coefficient(p, at);
+      if constexpr (ProgrammedLaw<L>) {
+        return L::coefficient_and_rates(p, at, rates);
+      } else {
+        if constexpr (L::states > 0) L::state_rates(p, at, rates);
+        return L::coefficient(p, at);
+      }
     }
     return S(0);
   });

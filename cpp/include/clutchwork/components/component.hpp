@@ -4,6 +4,7 @@
 #include <clutchwork/declared.gen.hpp>
 
 #include <concepts>
+#include <cstdint>
 #include <type_traits>
 
 /// What an element or a friction law provides: parameters and pure functions of one rate, own states and inputs.
@@ -277,6 +278,13 @@ concept RunningOn = requires {
 template <class L>
 concept BoundedLaw = requires(const typename L::template Params<double>& p, const At<double>& at, double& seen) {
   { L::outside(p, at, seen) } -> std::same_as<double>;
+};
+
+/// Law whose equations are words of the model: whether they read what is there, of so many numbers behind its
+/// parameters.
+template <class L>
+concept ProgrammedLaw = requires(const typename L::template Params<double>& p, const double* points) {
+  { L::is_sound(p, points, std::int64_t(0)) } -> std::same_as<bool>;
 };
 
 /// Law or element whose tables have sizes that must belong together.

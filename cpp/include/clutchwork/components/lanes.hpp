@@ -121,6 +121,15 @@ struct Lanes {
   friend CLUTCHWORK_INLINE Lanes tanh(const Lanes& x) {
     return each(x, [](double y) { return tanh(y); });
   }
+  friend CLUTCHWORK_INLINE Lanes sin(const Lanes& x) {
+    return each(x, [](double y) { return sin(y); });
+  }
+  friend CLUTCHWORK_INLINE Lanes cos(const Lanes& x) {
+    return each(x, [](double y) { return cos(y); });
+  }
+  friend CLUTCHWORK_INLINE Lanes atan(const Lanes& x) {
+    return each(x, [](double y) { return atan(y); });
+  }
   friend CLUTCHWORK_INLINE Lanes pow(const Lanes& x, const Lanes& p) {
     Lanes r;
     for (int i = 0; i < n_lanes; ++i) r[i] = pow(x[i], p[i]);
