@@ -8,9 +8,28 @@ import numpy as np
 import pytest
 
 import clutchwork as cw
-from support import by_differences
+from clutchwork.gradients import extremes
+from clutchwork.gradients.steps import Steps
+from clutchwork.sweeps.outputs import asked
+from support import by_differences, free_numbers
+from support.compared_gradients import Tally
+from support.compared_gradients import compared as compared_to_both_sides
 
 TIGHT: dict[str, Any] = {"rtol": 1e-10, "atol": 1e-12}
+
+
+def derivatives(model: cw.Driveline, t_end: float, of: Any, by: str, side: Any = None, **options: Any) -> cw.Gradient:
+    """Those of one value by one number."""
+    return cw.differentiable(model, t_end, of=of, by=by, side=side, **{**TIGHT, **options}).gradient()
+
+
+def judged(model: cw.Driveline, t_end: float, of: Any, by: list[str]) -> Tally:
+    """What differences of runs say of derivatives of values by numbers."""
+    tally, system = Tally(), model.assemble()
+    wanted, run = asked(of), model.simulate(t_end, rtol=1e-8)
+    chosen = [one for one in free_numbers.free(system) if one.name in by]
+    compared_to_both_sides(tally, system, t_end, wanted, by_differences.scales(run, wanted), chosen)
+    return tally
 
 
 def compared(model: cw.Driveline, t_end: float, of: Any, by: list[str], **options: Any) -> None:
@@ -90,3 +109,161 @@ def test_a_speed_without_inertia_bends_at_a_knot_at_the_end() -> None:
         d.simulate(0.3, **TIGHT).gradient(of="m.speed", by="t.torque.times[3]")
     found = d.simulate(0.3, **TIGHT).gradient(of=["a.speed", "m.speed"], by="t.torque.values[2]")
     assert found.problems == ()
+
+
+# -------------------------------------------------------------------------------------- borders that meet, or the start
+
+
+def on_border(kind: str) -> tuple[cw.Driveline, str, list[str]]:
+    """A driveline that begins where one piece of a part goes over to another, a value of it, and numbers."""
+    d = cw.Driveline(kind)
+    a, b = d.shaft("a", inertia=0.3, speed=10.0), d.shaft("b", inertia=0.5)
+    d.add(cw.Torque("t", shaft=a, torque=5.0))
+    if kind == "road":
+        d.add(cw.Road("k", elevation=[(0.0, 0.0), (0.8, 0.02), (20.0, 0.3)], speed=4.0, initial_position=0.0))
+        return d, "k.position", ["k.initial_position", "k.speed", "a.speed"]
+    if kind == "engine":
+        curve = {"full_load": [(0.0, 20.0), (30.0, 20.0)], "motoring": [(0.0, -4.0), (30.0, -9.0)]}
+        d.add(cw.Engine("k", shaft=a, **curve, throttle=0.6, max_speed=10.0, limit_band=1.0, cut=True))
+        return d, "a.speed", ["a.speed", "k.max_speed", "a.inertia"]
+    if kind == "motor":
+        d.add(cw.SpeedTorque("k", shaft=a, torque=[(0.0, 0.0), (10.0, -1.0), (30.0, -9.0)]))
+        return d, "a.speed", ["a.speed", "k.torque.arguments[2]", "k.torque.values[2]"]
+    gap = {"base": a, "follower": b, "stiffness": 900.0, "damping": 4.0, "gap": 0.02}
+    d.add(cw.ElasticBacklash("k", **gap, initial_twist=-0.01))
+    return d, "b.speed", ["k.initial_twist", "k.gap", "k.stiffness"]
+
+
+@pytest.mark.parametrize("kind", ["road", "engine", "motor", "gap"])
+def test_a_run_that_begins_on_a_border_has_a_derivative_where_both_sides_do(kind: str) -> None:
+    # seed 60103: nothing was passed there, or it was passed at once, at an instant that did not move
+    model, of, by = on_border(kind)
+    tally = judged(model, 0.2, [of], by)
+    assert tally.wrong + tally.refused + tally.apart == [], kind
+    # of a road and a cut the motion jumps, of others it bends
+    assert tally.rightly == {"road": 1, "engine": 2, "motor": 0, "gap": 0}[kind]
+
+
+def test_borders_of_two_pieces_that_are_met_at_one_instant() -> None:
+    # seed 60083: an engine whose curve ends at the speed at which it is cut
+    d = cw.Driveline("cut")
+    a = d.shaft("a", inertia=0.05, speed=20.0)
+    curve = {"full_load": [(0.0, 206.0), (32.6, 95.5)], "motoring": [(0.0, -6.33), (32.6, -2.75)]}
+    limits = {"idle_speed": 4.57, "idle_gain": 0.0118, "idle_integral": 0.0235, "max_speed": 32.6, "limit_band": 3.26}
+    d.add(cw.Engine("e", shaft=a, throttle=1.0, cut=True, **curve, **limits))
+    with pytest.raises(cw.NoGradient, match=r"two events at .* move apart"):
+        derivatives(d, 0.2, of=cw.squared_jerk("a"), by="e.max_speed")
+
+
+def test_a_screw_that_jams_again_and_again_has_no_derivative_of_its_lock() -> None:
+    # seed 60047: jams that leave the motion as it was were not among what decides
+    d = cw.Driveline("jams")
+    s, w, m = d.shaft("s"), d.shaft("w"), d.mass("m", mass=131.0, speed=0.2)
+    d.add(cw.Torque("drive", shaft=s, torque=-3.27))
+    d.add(
+        cw.WormGear("g", worm=s, wheel=w, ratio=-126.0, lead_angle=0.206, friction_coefficient=0.0, normal_angle=0.0751)
+    )
+    screw = {"lead": 0.0019, "radius": 0.0185, "friction_coefficient": 0.0399}
+    d.add(cw.Leadscrew("e", screw=w, mass=m, support=s, **screw))
+    d.add(cw.WetDrag("drag", base=s, follower=w, peak=0.972, speed=3.58))
+    d.add(cw.ElasticBacklash("k", base=s, follower=w, stiffness=2800.0, gap=0.0874))
+    run = d.simulate(0.0768, **TIGHT)
+    assert [event.cause for event in run.events].count("jam") > 1
+    with pytest.raises(cw.NoGradient, match="only just touches zero"):
+        run.gradient(of=cw.lock("e"), by="e.radius")
+
+
+# ---------------------------------------------------------------------------------- what jumps or goes on within a step
+
+
+def directional(cls: str) -> cw.Driveline:
+    """A locked contact that holds more one way than the other, and whose torque turns round."""
+    d = cw.Driveline(cls)
+    a = d.shaft("a", inertia=0.5)
+    law = cw.Coulomb(static=0.3, kinetic=0.25)
+    if cls == "band":
+        d.add(
+            cw.BandBrake(
+                "c",
+                shaft=a,
+                friction=law,
+                radius=0.1,
+                wrap=4.0,
+                force=cw.Ramp(height=100.0, duration=0.5, offset=400.0),
+                locked=True,
+            )
+        )
+    elif cls == "fundamental":
+        d.add(cw.FundamentalClutch("c", base=d.housing, follower=a, kinetic=0.1, upper=30.0, lower=-70.0, locked=True))
+    else:
+        d.add(cw.BeltContact("c", base=d.housing, follower=a, forward=1.0, backward=2.0, tension=300.0, locked=True))
+    d.add(cw.Torque("t", shaft=a, torque=cw.Sine(amplitude=20.0, frequency=2.3, phase=0.4)))
+    return d
+
+
+@pytest.mark.parametrize("cls", ["band", "fundamental", "belt"])
+def test_a_capacity_that_jumps_with_the_direction_of_its_torque(cls: str) -> None:
+    # seeds 60032 and 70081: no step ends there, and polynomials through the jump went beyond both sides of it
+    model = directional(cls)
+    run = model.simulate(0.5, times=np.linspace(0.0, 0.5, 20001), **TIGHT)
+    assert not run.events
+    number = {"band": "c.friction.static", "fundamental": "c.lower", "belt": "c.tension"}[cls]
+    for one, extreme in ((cw.maximum("c.capacity"), max), (cw.minimum("c.capacity"), min)):
+        function = cw.differentiable(model, 0.5, of=one, by=number, **TIGHT)
+        # a row may be as far from the jump as two of them are apart
+        assert function(function.x0)[0] == pytest.approx(extreme(run["c.capacity"]), rel=1e-4)
+        assert function.gradient().values[0] == pytest.approx(function(function.x0)[0], rel=1e-9)
+    of = [cw.maximum("c.capacity"), cw.minimum("c.capacity")]
+    compared(model, 0.5, of, [number, "t.torque.phase", "t.torque.offset"])
+
+
+def test_a_state_that_is_set_where_no_torque_jumps() -> None:
+    # seed 70048: a tyre leaves the road with a tread that is bent, and without force
+    d = cw.Driveline("lifted")
+    a, m = d.shaft("a", inertia=0.3, speed=5.0), d.mass("m", mass=4.0)
+    load = cw.Sine(amplitude=1000.0, frequency=4.0, offset=700.0)
+    d.add(cw.Tyre("y", shaft=a, mass=m, radius=0.12, load=load, low_speed_damping=480.0))
+    d.add(cw.Torque("t", shaft=a, torque=12.0))
+    function = cw.differentiable(d, 0.3, of=cw.minimum("y.deflection"), by="y.radius", **TIGHT)
+    assert function(function.x0)[0] == pytest.approx(function.gradient().values[0], rel=1e-9, abs=1e-15)
+    run = d.simulate(0.3, times=np.linspace(0.0, 0.3, 30001), **TIGHT)
+    assert function(function.x0)[0] == pytest.approx(min(run["y.deflection"]), abs=1e-9)
+
+
+@pytest.mark.parametrize("rtol", [1e-6, 1e-10])
+def test_a_jerk_that_a_knot_leaves_as_it_is(rtol: float) -> None:
+    # seed 60023: steps of a prescribed motion, whose polynomials miss more of its jerk than the knot moves
+    d = cw.Driveline("prescribed")
+    a, b = d.shaft("a", inertia=1.0), d.shaft("b", inertia=1.0)
+    d.add(cw.PrescribedSpeed("motion", shaft=a, speed=cw.Sine(amplitude=5.0, frequency=5.5, offset=20.0)))
+    d.add(cw.Torque("t", shaft=b, torque=cw.Pulse(height=1.4, period=0.0974, width=0.0359)))
+    found = derivatives(d, 0.47, of=cw.squared_jerk("a"), by="t.torque.start", rtol=rtol, atol=rtol / 100)
+    assert found.matrix[0, 0] == 0.0
+
+
+def test_values_that_are_squares_of_a_number_at_zero_have_a_derivative_there() -> None:
+    # seed 60115: both limits were round-off of derivatives beside it, with unlike signs
+    d = cw.Driveline("square")
+    a = d.shaft("a", inertia=0.5)
+    m = d.mass("m", mass=16.0)
+    quarter, half = np.pi / 2, 0.0066
+    lift = [(0.0, 0.0), (quarter, half), (2 * quarter, 2 * half), (3 * quarter, half), (4 * quarter, 0.0)]
+    d.add(cw.Cam("cam", shaft=a, mass=m, lift=lift))
+    d.add(cw.Torque("push", shaft=m, torque=30.0))
+    found = derivatives(d, 0.1, of=["push.work", "a.speed"], by="a.angle", **TIGHT)
+    assert found.problems == ()
+    # of what is nearly 0.1 J for an angle of one radian
+    assert abs(found.matrix[0, 0]) < 1e-9
+
+
+def test_a_hill_of_short_steps_has_one_top() -> None:
+    # seed 70010: steps of a microsecond in which a torque changed by less than what counts as equal
+    begins = 0.1 + 1e-6 * np.arange(40)
+    times = np.unique(np.concatenate([begins, 0.1 + np.linspace(0.0, 40e-6, 161)]))[: 4 * 40 + 1]
+    steps = Steps.of_parts(times)
+    top = float(begins[17] + 0.3e-6)
+    values = 67.0 - 500.0 * (times[steps.rows] - top) ** 2
+    found = extremes.candidates(cw.maximum("x"), steps, values)
+    assert (found[0].step, found[0].share) == (17, pytest.approx(0.3, abs=1e-3))
+    # beside it the other side of its joint alone
+    assert {one.step for one in found} <= {16, 17, 18}

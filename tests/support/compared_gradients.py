@@ -41,6 +41,8 @@ ZERO = {"s": 0.1, "rad": 0.1, "m": 0.1}
 UNLIKE, MOST = 30.0, 1e-2
 # two ways through the same run differ by round-off, grown by what is stiff, and by the parts that each chooses
 BOTH_WAYS = 1e-7
+# relative tolerances that a driveline is run at, and what its derivatives may miss there, of the scale of a value
+LOOSE = ((1e-6, 1e-4), (1e-9, 1e-7))
 # what a derivative may miss behind an event that is noted: it has half of its digits
 ALLOWED_NOTED = 1e-3
 
@@ -59,8 +61,12 @@ class Tally:
     whole: list[str] = field(default_factory=list)
     # what misses more than others, behind an event that a note is about
     noted: list[str] = field(default_factory=list)
-    # forward, followed back, f(x) and sweep that do not agree
+    # values whose derivatives were found in every way, and where forward, followed back, f(x) and sweep do not agree
+    ways: int = 0
     apart: list[str] = field(default_factory=list)
+    # of those compared, at each of the looser tolerances: found there, and within what is allowed
+    loose: list[int] = field(default_factory=lambda: [0] * len(LOOSE))
+    within: list[int] = field(default_factory=lambda: [0] * len(LOOSE))
 
 
 @dataclass(frozen=True)
@@ -69,13 +75,13 @@ class Differences:
 
     slope: Array
     doubt: Array  # how far both sides are apart
-    sides: Array  # of each side, and how far its own widths are apart
+    sides: Array  # of each side, where its own widths are nearest and of the last one, and how far they are apart there
     doubts: Array
 
     @property
     def bends(self) -> NDArray[np.bool_]:
         """Values with another derivative on each side."""
-        apart = np.abs(self.sides[0] - self.sides[1])
+        apart = np.abs(np.diff(self.sides, axis=1)).min(axis=(0, 1))
         found: NDArray[np.bool_] = (self.doubts.max(axis=0) < ALLOWED) & (apart > UNLIKE * ALLOWED)
         return found
 
@@ -134,16 +140,30 @@ def size(one: Any) -> float:
     return max(abs(one.start), one.scale if one.places else 0.0) or ZERO.get(one.unit, 1.0)
 
 
-def compared(tally: Tally, system: cw.System, t_end: float, wanted: dict[str, Any], scales: Array, chosen: Any) -> None:
-    """Derivatives of values of a system by some of its numbers."""
-    function = cw.differentiable(system, t_end, of=wanted, by=[one.name for one in chosen], **TOLERANCES)
-    both_ways(tally, function, scales, chosen)
+def compared(
+    tally: Tally,
+    system: cw.System,
+    t_end: float,
+    wanted: dict[str, Any],
+    scales: Array,
+    chosen: Any,
+    *,
+    loose: bool = False,
+) -> None:
+    """Derivatives of values of a system by some of its numbers.
+
+    Parameters: loose, whether those of looser tolerances are looked at too.
+    """
+    by = [one.name for one in chosen]
+    function = cw.differentiable(system, t_end, of=wanted, by=by, **TOLERANCES)
     try:
         found = function.gradient()
     except cw.NoGradient as none:
         tally.whole += none.problems
         return
+    both_ways(tally, function, found.matrix, scales, chosen)
     tight = Exact(replace(function.task, options=function.task.options.changed(TIGHT)))
+    at_loose = [_at(function, rtol) for rtol, _ in LOOSE] if loose else []
     for number, one in enumerate(chosen):
         known = differences(tight, function.x0, number, one, scales)
         pairs = [Pair(function, found, number, place, scale / size(one)) for place, scale in enumerate(scales)]
@@ -151,22 +171,29 @@ def compared(tally: Tally, system: cw.System, t_end: float, wanted: dict[str, An
             known = differences(tight, function.x0, number, one, scales, sure=True)
         for pair in pairs:
             _judge(tally, pair, known)
+            for place, matrix in enumerate(at_loose):
+                _judge_loose(tally, place, pair, known, float(matrix[pair.place, pair.number]))
 
 
-def both_ways(tally: Tally, function: Any, scales: Array, chosen: tuple[Any, ...]) -> None:
-    """A run that carries derivatives along, one that is followed back, f(x) and a sweep give the same."""
+def both_ways(tally: Tally, function: Any, given: Array, scales: Array, chosen: tuple[Any, ...]) -> None:
+    """A run that carries derivatives along, one that is followed back, f(x) and a sweep give the same.
+
+    Parameters: given, the derivatives: of those that are refused nobody asks.
+    """
     engine, x = function.engine, function.x0
     sizes = np.array([size(one) for one in chosen])
     try:
         runs, known = engine.runs, engine._asked
         point = runs.point(x)
+        point = engine.split(point, runs.forward(point))
         forward, back = runs.forward(point), runs.taped(point)
     except cw.NoGradient:
         return
     args = (function.task.outputs, function.of, known, sizes)
     values, swept = function(x), _swept(function)
     for place, (a, b, scale) in enumerate(zip(lines(forward, *args), lines(back, *args), scales, strict=True)):
-        missed = np.abs(a.left - b.left) * sizes / scale
+        tally.ways += 1
+        missed = np.where(np.isnan(given[place]), 0.0, np.abs(a.left - b.left) * sizes / scale)
         if np.nanmax(missed, initial=0.0) > BOTH_WAYS:
             tally.apart.append(f"{a.name}: forward {a.left}, back {b.left}, {np.nanmax(missed):.1e} of scale")
         for what, value in (("f(x)", values[place]), ("sweep", swept.get(place, values[place]))):
@@ -195,7 +222,10 @@ def differences(tight: Exact, x0: Array, number: int, one: Any, scales: Array, *
             break
     whole, values = np.array(found), np.arange(len(scales))
     steps = np.abs(np.diff(whole, axis=0))
-    doubts = np.where(np.isfinite(steps), steps, np.inf).min(axis=0, initial=np.inf)
+    steps = np.where(np.isfinite(steps), steps, np.inf)
+    doubts, nearest = steps.min(axis=0, initial=np.inf), whole[-1]
+    if len(steps):
+        nearest = np.take_along_axis(whole[1:], steps.argmin(axis=0)[None], axis=0)[0]
     apart = np.abs(whole[:, 0] - whole[:, 1])
     if sure:
         means = whole.mean(axis=1)
@@ -203,7 +233,8 @@ def differences(tight: Exact, x0: Array, number: int, one: Any, scales: Array, *
         apart = np.maximum(apart, np.concatenate([changes[:1], np.minimum(changes[:-1], changes[1:]), changes[-1:]]))
     apart = np.where(np.isfinite(apart), apart, np.inf)
     best = np.argmin(apart, axis=0)
-    return Differences(whole[best, :, values].mean(axis=1), apart[best, values], whole[-1], doubts)
+    slopes = whole[best, :, values].mean(axis=1)
+    return Differences(slopes, apart[best, values], np.array([nearest, whole[-1]]), doubts)
 
 
 def _judge(tally: Tally, pair: Pair, known: Differences) -> None:
@@ -213,7 +244,7 @@ def _judge(tally: Tally, pair: Pair, known: Differences) -> None:
         tally.doubtful += 1
         tally.rightly += int(np.isnan(pair.exact))
         if known.bends[pair.place] and np.isfinite(pair.exact):
-            left, right = known.sides[:, pair.place] * pair.scale
+            left, right = known.sides[0, :, pair.place] * pair.scale
             tally.wrong.append(f"{words} {left:.8g} on the left and {right:.8g} on the right")
         return
     tally.compared += 1
@@ -223,6 +254,23 @@ def _judge(tally: Tally, pair: Pair, known: Differences) -> None:
     elif not missed < pair.allowed:
         noted = missed < ALLOWED_NOTED and pair.noted
         (tally.noted if noted else tally.wrong).append(words)
+
+
+def _at(function: Any, rtol: float) -> Array:
+    """Derivatives at another tolerance, NaN where there are none."""
+    changed = function.task.options.changed({"rtol": rtol, "atol": rtol / 100})
+    try:
+        found: Array = Exact(replace(function.task, options=changed)).gradient(function.x0).matrix
+    except cw.NoGradient:
+        return np.full((len(function.of), len(function.by)), np.nan)
+    return found
+
+
+def _judge_loose(tally: Tally, place: int, pair: Pair, known: Differences, derivative: float) -> None:
+    told, slope, doubt = pair.scaled(known)
+    if doubt < KNOWN * ALLOWED and np.isfinite(pair.exact) and np.isfinite(derivative):
+        tally.loose[place] += 1
+        tally.within[place] += int(abs(derivative / told - slope) < LOOSE[place][1])
 
 
 def concerned(notes: tuple[str, ...], function: Any, name: str) -> bool:
@@ -260,7 +308,27 @@ def summed(tallies: Iterator[Tally]) -> dict[str, int]:
     total = dict[str, int]()
     for one in tallies:
         counts = {"models": 1, "compared": one.compared, "doubtful": one.doubtful, "rightly": one.rightly}
+        counts |= {"ways": one.ways}
+        for (rtol, _), found, within in zip(LOOSE, one.loose, one.within, strict=True):
+            counts |= {f"found at {rtol:g}": found, f"within at {rtol:g}": within}
         for what in ("wrong", "apart", "noted", "refused", "whole"):
             counts[what] = len(getattr(one, what))
         total = {name: total.get(name, 0) + count for name, count in counts.items()}
     return total
+
+
+def stated(total: dict[str, int]) -> Iterator[str]:
+    """What the numbers of pairs say, in sentences."""
+
+    def share(part: int, whole: int) -> str:
+        return f"{part} ({100.0 * part / max(whole, 1):.2f} %)"
+
+    pairs, whole = total["compared"] + total["doubtful"], total["compared"]
+    yield f"{total['models']} models, {pairs} pairs of a value and a number, {whole} of which differences know"
+    yield f"wrong without a word: {share(total['wrong'], pairs)}, behind a note: {share(total['noted'], pairs)}"
+    yield f"refused without a cause: {share(total['refused'], whole)}, with one: {share(total['rightly'], pairs)}"
+    yield f"forward, adjoint, f(x) and sweep: {total['ways']} values, of which apart: {total['apart']}"
+    for rtol, allowed in LOOSE:
+        found, within = total[f"found at {rtol:g}"], total[f"within at {rtol:g}"]
+        yield f"at rtol {rtol:g} within {allowed:g} of the scale: {share(within, found)} of {found}"
+    yield f"models without any derivative, or given up: {total['whole']}"

@@ -16,7 +16,14 @@ from numpy.typing import NDArray
 from clutchwork.base.classes import dataclass
 from clutchwork.gradients.beginning import at_rest
 from clutchwork.gradients.contact_at_rest import unpressed
-from clutchwork.gradients.grazing import crowded, decided_at_knots, jumping_together, refused, struck_together
+from clutchwork.gradients.grazing import (
+    crowded,
+    decided_at_knots,
+    jumping_together,
+    moving_apart,
+    refused,
+    struck_together,
+)
 from clutchwork.gradients.knots import times_of
 from clutchwork.gradients.lines import Line
 from clutchwork.gradients.primal import SAME
@@ -126,7 +133,8 @@ class Doubts:
     def _decisions(self) -> Iterator[Doubt]:
         primal, system, contacts = self.run.primal, self.runs.task.system, self.runs.wanted.contacts
         knots, size = times_of(self.point.chart, self.point.words, primal.t_end), float(self.sizes.max())
-        for time, why in refused(system, primal.decided, size):
+        apart = moving_apart(system, primal.grazes, primal.decided, self.runs.wanted.begin, size)
+        for time, why in chain(refused(system, primal.decided), apart):
             yield Doubt(why, self._up_to(time), self._all)
         for time, why in jumping_together(system, primal.grazes, size):
             yield Doubt(why, self._up_to(time), self._moving_knots())

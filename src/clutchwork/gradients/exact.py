@@ -185,22 +185,29 @@ class Exact:
         return run, lines(run, outputs, self.task.labels, self._asked, self.runs.sizes(point.x))
 
     def _refined(self, point: RunPoint, results: int) -> Run:
-        """A run with rows on both sides of where signals of extremes bend."""
-        run, plain = self._run(point, results), self.runs.plain
-        if plain.sharing is None or not len(run.primal.steps):
-            return run
-        primal, rows_at = run.primal, partial(plain.rows_at, point.system, range(run.primal.rows.shape[1]))
-        steps, _ = plain.refined(primal.steps, primal.rows, primal.forms, plain.sharing.columns, rows_at)
+        """A run with rows on both sides of where signals of extremes bend or jump."""
+        run = self._run(point, results)
+        there = self.split(point, run)
+        return run if there is point else self._run(there, results)
+
+    def split(self, point: RunPoint, run: Run) -> RunPoint:
+        """The point with steps that end where signals of extremes bend or jump."""
+        plain, primal = self.runs.plain, run.primal
+        if plain.inside is None or not len(primal.steps):
+            return point
+        rows_at = partial(plain.rows_at, point.system, range(primal.rows.shape[1]))
+        steps, _ = plain.refined(primal.steps, primal.rows, primal.forms, plain.inside.columns, rows_at)
         if steps is primal.steps:
-            return run
-        grid = np.unique(np.concatenate([self.runs.wanted.grid, steps.times.ravel()]))
-        return self._run(point._replace(steps=steps, grid=grid), results)
+            return point
+        return point._replace(steps=steps, grid=np.unique(np.concatenate([self.runs.wanted.grid, steps.times.ravel()])))
 
     def _run(self, point: RunPoint, results: int) -> Run:
         """A run, followed back where results are few and numbers many."""
         run = self.runs.taped(point) if self._is_followed_back(point.x, results) else self.runs.forward(point)
         # of events at one instant it is to be known how they move
-        return self.runs.forward(point) if not run.is_forward and together(run.primal.grazes) else run
+        return (
+            self.runs.forward(point) if not run.is_forward and together(run.primal.grazes, run.primal.decided) else run
+        )
 
     @staticmethod
     def _is_followed_back(x: Array, results: int) -> bool:
@@ -242,4 +249,7 @@ class Exact:
             replace(one, start=float(x[number]), reach=min(one.reach, reach * float(sizes[number])))
             for number, one in chosen
         )
-        return Exact(replace(self.task, system=self.runs.words.assembled(x), parameters=parameters))
+        options = self.task.options
+        if np.isfinite(reach):
+            options = options.changed({"atol": float(options.atol * STEP)})
+        return Exact(replace(self.task, system=self.runs.words.assembled(x), parameters=parameters, options=options))

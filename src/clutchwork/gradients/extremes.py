@@ -10,7 +10,7 @@ from numpy.polynomial.polynomial import polyval
 from numpy.typing import NDArray
 
 from clutchwork.gradients.functional import Functional
-from clutchwork.gradients.instants import add_shift
+from clutchwork.gradients.instants import add_shift, add_turn
 from clutchwork.gradients.primal import SMOOTH, Primal
 from clutchwork.gradients.signals import add_signal, signal_at
 from clutchwork.gradients.steps import Steps
@@ -30,6 +30,8 @@ LEVEL = 1e-3
 BENT = 1e-3
 # limits from both sides that differ by more are those of a jump, of the larger one
 JUMP = 1e-6
+# from so many steps in a row on they are looked at as one hill
+HILL = 3
 # so many of those that are equal are looked at
 MOST_EQUAL = 16
 SIGNS = {"maximum": (1.0,), "minimum": (-1.0,), "peak": (1.0, -1.0)}
@@ -69,11 +71,11 @@ def candidates(one: Extreme, steps: Steps, values: Array) -> list[Located]:
     found, allowed = list[Located](), _allowed(values)
     sides = list(_near(one, steps, values))
     best = max((side.best for side in sides), default=0.0)
-    for sign, coefficients, near, _, bound in sides:
+    for sign, coefficients, near, tops, _, bound in sides:
         for step in near.tolist() if bound >= best - allowed else ():
-            own = sign * coefficients[step]
+            own, is_top = sign * coefficients[step], step in tops
             rough = float(abs(own[-1]) / steps.length[step])
-            found += [place._replace(rough=rough) for place in _in_step(step, own, PLACES @ own, sign, allowed)]
+            found += [one._replace(rough=rough) for one in _in_step(step, own, PLACES @ own, sign, allowed, is_top)]
     least = max((one.value for one in found), default=0.0) - allowed
     return sorted((one for one in found if one.value >= least), key=lambda one: one.share in (0.0, 1.0))
 
@@ -93,6 +95,7 @@ class CandidateSteps(NamedTuple):
     sign: float
     coefficients: Array  # of the polynomials of all steps
     near: Places
+    tops: Places  # those of them that have the top of short ones
     best: float  # the largest sample
     bound: float  # which no value exceeds
 
@@ -107,18 +110,47 @@ def _near(one: Extreme, steps: Steps, values: Array) -> Iterator[CandidateSteps]
         upper = (sign * samples).max(axis=1)
         best = float(upper.max(initial=-np.inf))
         near = np.flatnonzero(upper + rise >= best - _allowed(values))
+        near, tops = _without_hillsides(near, sign * coefficients, sign * samples, _allowed(values))
         if len(near) > MOST_EQUAL:
             first = near[np.argsort(-upper[near], kind="stable")][:MOST_EQUAL]
             # of a plateau its ends are among those that are looked at
             near = np.unique([*first, near[0], near[-1]])
-        yield CandidateSteps(sign, coefficients, near, best, float((upper + rise).max(initial=-np.inf)))
+        yield CandidateSteps(sign, coefficients, near, tops, best, float((upper + rise).max(initial=-np.inf)))
 
 
-def _in_step(step: int, coefficients: Array, samples: Array, sign: float, allowed: float) -> list[Located]:
-    """The largest value of a polynomial, and where it is: at an end, where its slope is zero, or everywhere."""
-    if (rise := float(np.ptp(samples))) <= allowed:
+def _without_hillsides(near: Places, coefficients: Array, samples: Array, allowed: float) -> tuple[Places, Places]:
+    """Without steps in a row that are nearly as large, but rise to a top and fall behind it; and those that have it.
+
+    Such steps are short ones, of stiff motion.
+    """
+    tops = [NOWHERE]
+    for chain in np.split(near, np.flatnonzero(np.diff(near) > 1) + 1):
+        rises = np.ptp(samples[chain], axis=1)
+        if len(chain) < HILL or rises.min() <= LEVEL * allowed or rises.min() > allowed:
+            continue
+        ends = np.column_stack([coefficients[chain, 0], coefficients[chain].sum(axis=1)]).ravel()
+        top, slack = int(np.argmax(ends)), LEVEL * allowed
+        if np.all(np.diff(ends[: top + 1]) >= -slack) and np.all(np.diff(ends[top:]) <= slack):
+            tops.append(chain[max(0, (top - 1) // 2) : (top + 1) // 2 + 1])
+            near = np.union1d(np.setdiff1d(near, chain), tops[-1])
+    return near, np.concatenate(tops)
+
+
+def _in_step(
+    step: int, coefficients: Array, samples: Array, sign: float, allowed: float, is_top: bool
+) -> list[Located]:
+    """The largest value of a polynomial, and where it is: at an end, where its slope is zero, or everywhere.
+
+    Parameters: is_top, whether it has one place however little it rises.
+    """
+    if (rise := float(np.ptp(samples))) <= allowed and not is_top:
         level = rise <= LEVEL * allowed
         return [Located(float(samples[end]), step, float(-end), sign, is_flat=True, is_level=level) for end in (0, -1)]
+    return [_top(step, coefficients, samples, sign, allowed)]
+
+
+def _top(step: int, coefficients: Array, samples: Array, sign: float, allowed: float) -> Located:
+    """The largest value of a polynomial that is not the same everywhere."""
     best = int(np.argmax(samples))
     share, slope = best / (len(samples) - 1), coefficients[1:] * np.arange(1, len(coefficients))
     bend = slope[1:] * np.arange(1, len(slope))
@@ -129,10 +161,10 @@ def _in_step(step: int, coefficients: Array, samples: Array, sign: float, allowe
     value = float(polyval(share, coefficients))
     # at an end it still rises, or there is no better place inside
     if value <= samples[best]:
-        return [Located(float(samples[best]), step, best * WIDTH, sign)]
+        return Located(float(samples[best]), step, best * WIDTH, sign)
     low_enough = samples < value - allowed
     before, behind = low_enough[: int(share / WIDTH) + 1], low_enough[int(share / WIDTH) + 1 :]
-    return [Located(value, step, share, sign, holds=(not before.any(), not behind.any()))]
+    return Located(value, step, share, sign, holds=(not before.any(), not behind.any()))
 
 
 def apart(primal: Primal, found: list[Located]) -> list[Located]:
@@ -199,7 +231,17 @@ def add_extreme(primal: Primal, one: Extreme, found: Located, into: Functional) 
     if not inside:
         slopes = steps.left_slope if found.share == 0.0 else steps.right_slope
         rate = float(slopes[found.step] @ signal_at(primal, one.signal, steps.rows[found.step]))
-        add_shift(primal, int(end or 0), sign * rate, into)
+        if primal.between[0][end] != SMOOTH:
+            add_shift(primal, int(end or 0), sign * rate, into)
+        elif _jumps(primal, one, int(end or 0)):
+            add_turn(primal, one.signal, int(end or 0), sign * rate, into)
+
+
+def _jumps(primal: Primal, one: Extreme, end: int) -> bool:
+    """Whether a signal jumps between two steps."""
+    steps, (before, behind) = primal.steps, (signal_at(primal, one.signal, primal.steps.rows[end - k]) for k in (1, 0))
+    values = float(steps.right[end - 1] @ before), float(steps.left[end] @ behind)
+    return abs(values[0] - values[1]) > JUMP * max(map(abs, values))
 
 
 def _of_bend(primal: Primal, one: Extreme, end: int, sign: float) -> list[tuple[int, Array]]:
@@ -209,9 +251,8 @@ def _of_bend(primal: Primal, one: Extreme, end: int, sign: float) -> list[tuple[
     """
     steps, (before, behind) = primal.steps, (signal_at(primal, one.signal, primal.steps.rows[end - k]) for k in (1, 0))
     rates = float(steps.right_slope[end - 1] @ before), float(steps.left_slope[end] @ behind)
-    values = float(steps.right[end - 1] @ before), float(steps.left[end] @ behind)
     bend = rates[0] - rates[1]
-    if abs(bend) <= BENT * max(map(abs, rates)) or abs(values[0] - values[1]) > JUMP * max(map(abs, values)):
+    if abs(bend) <= BENT * max(map(abs, rates)) or _jumps(primal, one, end):
         return []
     shares = -rates[1] / bend, rates[0] / bend
     return [(end - 1, sign * shares[0] * steps.right[end - 1]), (end, sign * shares[1] * steps.left[end])]

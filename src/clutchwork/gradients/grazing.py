@@ -7,7 +7,6 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from functools import cache
-from itertools import pairwise
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -38,7 +37,8 @@ TOUCHED = 1e-5
 # so many changes within so long [s] are refused
 CROWD, CROWDED = 6, 1e-4
 BY_NAME = {name: number for number, (name, _) in CAUSES.items()}
-IMPACT, DRIVEN = BY_NAME["impact"], (BY_NAME["input"], BY_NAME["other event"])
+BORDERS = ("line", "law", "process")
+IMPACT, JAM, DRIVEN = BY_NAME["impact"], BY_NAME["jam"], (BY_NAME["input"], BY_NAME["other event"])
 AT = {name: column for column, (name, _) in enumerate(EVENT)}
 
 
@@ -48,14 +48,23 @@ def guards(effect: str) -> tuple[int, ...]:
     return tuple(number for number, (_, found) in enumerate(derivatives().guards) if found == effect)
 
 
-def together(grazes: Array) -> bool:
-    """Whether two guards that decide about contacts are hit at one instant."""
-    times = sorted(time for time, kind in grazes[:, : KIND + 1].tolist() if kind in guards("decides"))
-    return any(later - time <= ONE_INSTANT * (1.0 + abs(later)) for time, later in pairwise(times))
+@cache
+def borders() -> tuple[int, ...]:
+    """Numbers in the core of the guards where another piece of a law, a table or a process begins."""
+    return tuple(number for number, (name, _) in enumerate(derivatives().guards) if name in BORDERS)
+
+
+def together(grazes: Array, decided: Array) -> bool:
+    """Whether what is hit at one instant moves apart, of which a run that is followed back knows no more.
+
+    Parameters: decided, those of the grazes that did.
+    """
+    bordering = grazes[np.isin(grazes[:, KIND], borders()) | (grazes[:, KIND] < 0)]
+    return bool(np.any(bordering[:, DIFFERENCE] > 0.0) or np.any(decided[:, DIFFERENCE] > 0.0))
 
 
 def decided(grazes: Array, events: Array) -> Array:
-    """Those that made a contact stick, slip, close or open.
+    """Those that made a contact stick, slip, close, open or jam.
 
     What passes from one piece of a law or a table to the next, and what bounces, may do so slowly: the motion goes on
     as it was, or jumps by less the slower it is.
@@ -63,29 +72,39 @@ def decided(grazes: Array, events: Array) -> Array:
     known = [number for number, kind in enumerate(grazes[:, KIND].tolist()) if kind in guards("decides")]
     if not known:
         return grazes[:0]
-    changed, deciding = events[:, AT["time"]][events[:, AT["from"]] != events[:, AT["to"]]], grazes.take(known, axis=0)
+    is_change = (events[:, AT["from"]] != events[:, AT["to"]]) | (events[:, AT["cause"]] == JAM)
+    changed, deciding = events[is_change, AT["time"]], grazes.take(known, axis=0)
     there = np.abs(deciding[:, TIME, None] - changed) <= SAME * (1.0 + np.abs(changed))
     found: Array = deciding[there.any(axis=1)]
     return found
 
 
-def refused(system: System, grazes: Array, sizes: float) -> Iterator[tuple[float, str]]:
-    """Why derivatives from some instants [s] on may not exist.
-
-    Parameters: sizes, the largest size of a number, by which derivatives of instants become times.
-    """
-    for graze in grazes:
-        if graze[INDEX] >= REFUSED and graze[DIFFERENCE] * sizes <= APART:
-            continue
+def refused(system: System, decided: Array) -> Iterator[tuple[float, str]]:
+    """Why derivatives from some instants [s] on may not exist: what decided only just touched zero."""
+    for graze in decided[decided[:, INDEX] < REFUSED]:
         time, name = float(graze[TIME]), component(system, int(graze[COMPONENT]), int(graze[KIND]))
-        if graze[INDEX] < REFUSED:
-            measure = f"abs(dg/dt)/scale = {graze[INDEX]:.2g} 1/s, below {REFUSED:g} 1/s"
-            remedy = "move a number so that it passes clearly, or not at all"
-            why = "only just touches zero, so the time of this event has no derivative"
-            yield time, f"{name} at {time:.9g} s {why}: {measure}; {remedy}"
-        if graze[DIFFERENCE] * sizes > APART:
-            why = f"two events at {time:.9g} s, of which {name} is one, move apart with the numbers; separate them"
-            yield time, why
+        measure = f"abs(dg/dt)/scale = {graze[INDEX]:.2g} 1/s, below {REFUSED:g} 1/s"
+        remedy = "move a number so that it passes clearly, or not at all"
+        why = "only just touches zero, so the time of this event has no derivative"
+        yield time, f"{name} at {time:.9g} s {why}: {measure}; {remedy}"
+
+
+def moving_apart(
+    system: System, grazes: Array, decided: Array, begin: float, sizes: float
+) -> Iterator[tuple[float, str]]:
+    """What is hit at one instant [s] but not beside it: by the order other pieces and modes may follow.
+
+    Parameters: decided, those of the grazes that did; begin, of the run [s], where one is enough; sizes, the largest
+    size of a number, by which derivatives of instants become times.
+    """
+    met = np.concatenate([decided, grazes[np.isin(grazes[:, KIND], borders())]])
+    for graze in np.unique(met[met[:, DIFFERENCE] * sizes > APART], axis=0):
+        time, name = float(graze[TIME]), component(system, int(graze[COMPONENT]), int(graze[KIND]))
+        if abs(time - begin) <= SAME * (1.0 + abs(begin)):
+            yield time, f"{name} begins where it goes from one piece to another; move a start value, or that border"
+        else:
+            what = f"two events at {time:.9g} s, of which {name} is one, move apart with the numbers; separate them"
+            yield time, what
 
 
 def jumping_together(system: System, grazes: Array, sizes: float) -> Iterator[tuple[float, str]]:

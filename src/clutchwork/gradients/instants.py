@@ -25,6 +25,16 @@ def add_shift(primal: Primal, step: int, share: float, into: Functional) -> None
         _add_kink(primal, step, share, into)
 
 
+def add_turn(primal: Primal, capacity: str, step: int, share: float, into: Functional) -> None:
+    """Add a share of the derivative of the instant at which a capacity jumps, as its torque turns round."""
+    steps, columns = primal.steps, primal.columns
+    column = primal.forms[capacity].weights(primal.rows[:1]).columns - columns["contact_capacity"].start
+    place = column + columns["contact_torque"].start
+    rows = steps.rows[step]
+    rate = float(steps.left_slope[step] @ primal.rows[rows, int(place[0])])
+    into.add(rows, place, (-share / rate * steps.left[step])[:, None])
+
+
 def _add_kink(primal: Primal, step: int, share: float, into: Functional) -> None:
     """The same of a piece of a law or a table, by what it bends: a speed, else an acceleration of some shaft."""
     steps = primal.steps

@@ -34,13 +34,16 @@ def add_jerk(primal: Primal, signal: str, acceleration: Array, into: Functional)
     inside = 2.0 * np.einsum("nij,nj->ni", steps.squared_slope, _varying(acceleration))
     before, behind = (side[1:-1] for side in _limits(steps, acceleration))
     known = np.isin(primal.between[0][1:], (EVENT, KNOT))
-    smooth = ~known & (~steps.jumps[1:] | (_rise(steps, acceleration) <= JUMP))
+    jumps = steps.jumps[1:] & (_rise(steps, acceleration) > JUMP)
+    smooth = ~known & ~jumps
+    # one that goes on smoothly, as that of a prescribed motion does at a knot of a torque, moves with none
+    own = known & ~jumps & (np.abs(behind - before) <= _lost(steps, acceleration))
     # what moves an instant at which it bends makes both limits differ at a fixed time: it need not be known
     share = np.where(smooth, before + behind, 0.0)[:, None]
     rows = np.concatenate([steps.rows, steps.rows[1:], steps.rows[:-1]])
     weights = np.concatenate([inside, share * steps.left[1:], -share * steps.right[:-1]])
     add_signal(primal, signal, rows.ravel(), weights.ravel(), into)
-    for step in np.flatnonzero(~smooth):
+    for step in np.flatnonzero(~smooth & ~own):
         add_shift(primal, int(step) + 1, float(before[step] ** 2 - behind[step] ** 2), into)
 
 
@@ -75,6 +78,13 @@ def _limits(steps: Steps, acceleration: Array) -> tuple[Array, Array]:
     before = np.r_[0.0, np.einsum("ni,ni->n", steps.right_slope, varying)]
     behind = np.r_[np.einsum("ni,ni->n", steps.left_slope, varying), 0.0]
     return before, behind
+
+
+def _lost(steps: Steps, acceleration: Array) -> Array:
+    """By how much both limits of the jerk at an instant may differ because polynomials have no more coefficients."""
+    last = MISSED * np.abs(np.einsum("ni,ni->n", steps.basis[:, PARTS], acceleration)) / steps.length
+    found: Array = last[1:] + last[:-1]
+    return found
 
 
 def _rise(steps: Steps, acceleration: Array) -> Array:

@@ -21,6 +21,8 @@ Places = NDArray[np.intp]
 ALIKE = 1e-6
 # what is not known of a derivative may be so much of the value, for a number that changes by all of itself
 UNKNOWN = 1e-6
+# a number that passes zero has at least this size, of the largest one of its kind
+PASSES = 1e-2
 NOWHERE, NONE = np.zeros(0, dtype=np.intp), np.zeros(0)
 
 
@@ -101,7 +103,7 @@ def _unknown(run: Run, one: Measure, sizes: Array) -> NDArray[np.bool_]:
 
 
 def _size(primal: Primal, columns: Places, time: float) -> float:
-    """The largest of all numbers of a row that are of the kind of some."""
+    """That of some numbers of a row, with a share of the largest one of their kind there: they may pass zero."""
     row, own = primal.rows[primal.row(time)], columns.tolist()
     used = {
         (part.start, part.stop)
@@ -109,7 +111,8 @@ def _size(primal: Primal, columns: Places, time: float) -> float:
         for column in own
         if part.start <= column < part.stop
     }
-    return max((abs(number) for first, end in used for number in row[first:end].tolist()), default=0.0)
+    largest = max((abs(number) for first, end in used for number in row[first:end].tolist()), default=0.0)
+    return max(float(np.abs(row[columns]).max(initial=0.0)), PASSES * largest)
 
 
 def _apart(found: Array, sizes: Array) -> Places:

@@ -14,7 +14,7 @@ from clutchwork.declare.core import core
 from clutchwork.declare.layout import DONE
 from clutchwork.gradients import extremes
 from clutchwork.gradients.measures import number_of
-from clutchwork.gradients.refined import Sharing, refined
+from clutchwork.gradients.refined import Inside, Seen, refined
 from clutchwork.gradients.steps import NO_STEPS, Steps
 from clutchwork.results.forms import all_reads
 from clutchwork.sweeps.batch import CoreOutputs
@@ -52,7 +52,7 @@ class PlainRuns:
     wanted: CoreOutputs
     options: Mapping[str, float]
     threads: int
-    sharing: Sharing | None = None  # contacts whose torques may bend inside of steps
+    inside: Inside | None = None  # what may bend or jump inside of steps
 
     def runs(self, systems: Sequence[bytes], columns: Sequence[int], *, grid: bool, steps: bool) -> list[Run]:
         """One run for each of the bytes; numbers of a row that are kept, at the instants and in the steps."""
@@ -108,10 +108,10 @@ class PlainRuns:
 
     def values(self, systems: Sequence[bytes], forms: Sequence[Mapping[str, Form]]) -> Array:
         """Outputs of each of the bytes, with the forms of its signals; NaN for what there is not."""
-        modes = self.sharing.columns if self.sharing is not None and self.wanted.signals(Extreme) else ()
-        columns, own = over_columns(forms, modes)
+        seen = self.inside.columns if self.inside is not None else ()
+        columns, own = over_columns(forms, seen)
         runs = self.runs(systems, columns, grid=self.on_grid, steps=self.in_steps)
-        places = [columns.index(mode) for mode in modes]
+        places = [columns.index(one) for one in seen]
         return np.array(
             [
                 self._of(run, some, places, partial(self.rows_at, system, columns))
@@ -124,38 +124,37 @@ class PlainRuns:
         steps: Steps,
         rows: Array,
         forms: Mapping[str, Form],
-        modes: Sequence[int],
+        seen: Sequence[int],
         rows_at: Callable[[Array], Array],
     ) -> tuple[Steps, Array]:
-        """Steps and their rows, split where signals of extremes bend inside of them.
+        """Steps and their rows, split where signals of extremes bend or jump inside of them.
 
-        Parameters: modes, of the contacts, their places in a row; rows_at, rows of the same run at any instants.
+        Parameters: seen, where in a row the columns of `inside` are; rows_at, rows of the same run at any instants.
         """
-        sharing, ones = self.sharing, [one for one in self.wanted.outputs.values() if isinstance(one, Extreme)]
-        if not ones or sharing is None or not len(steps):
+        inside, ones = self.inside, [one for one in self.wanted.outputs.values() if isinstance(one, Extreme)]
+        if not ones or inside is None or not len(steps):
             return steps, rows
 
         def on(made: Steps) -> tuple[Steps, Array]:
             grid = np.unique(made.times)
             return made.on(grid), rows_at(grid)
 
-        def values(made: Steps) -> tuple[list[Array], NDArray[np.bool_]]:
+        def values(made: Steps) -> Seen:
             placed, known = (steps, rows) if made is steps else on(made)
             found = [np.asarray(forms[one.signal](known), dtype=float)[placed.rows] for one in ones]
-            # beside its middle no event is near
-            return found, sharing.within(known[placed.rows[:, 2]][:, modes])
+            return inside.seen(ones, found, known[:, seen], placed.rows)
 
         split = refined(steps, ones, values)
         return (steps, rows) if split is None else on(split)
 
     def _of(
-        self, run: Run, forms: Mapping[str, Form], modes: Sequence[int], rows_at: Callable[[Array], Array]
+        self, run: Run, forms: Mapping[str, Form], seen: Sequence[int], rows_at: Callable[[Array], Array]
     ) -> list[float]:
         found = list[float]()
         steps = Steps.of_parts(run.times) if self.in_steps else NO_STEPS
         reached = run.status == DONE
         looks = reached and bool(self.wanted.signals(Extreme))
-        split = self.refined(steps.long(), run.rows, forms, modes, rows_at) if looks else (steps, run.rows)
+        split = self.refined(steps.long(), run.rows, forms, seen, rows_at) if looks else (steps, run.rows)
         for one in self.wanted.outputs.values():
             if isinstance(one, When):
                 number = number_of(run.events, one, self.wanted.contacts)

@@ -1,12 +1,14 @@
-"""Steps in which a signal bends without an event: contacts of a dependent set of which one reaches its capacity.
+"""Steps in which a signal bends or jumps without an event, which polynomials miss, so that they are split there.
 
-Polynomials miss such bends, so that steps are split at them. docs/theory/gradients.md (19)
+A contact of a dependent set reaches its capacity, or a capacity depends on the direction of its torque, which turns
+round. docs/theory/gradients.md (19)
 """
 
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from typing import TYPE_CHECKING
+from functools import partial
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 from numpy.polynomial.polynomial import polyval
@@ -25,15 +27,27 @@ if TYPE_CHECKING:
 
 Array = NDArray[np.float64]
 Mask = NDArray[np.bool_]
-# values of each extreme's signal in the rows of steps, and steps in which signals may bend
-Values = Callable[[Steps], tuple[Sequence[Array], Mask]]
+Places = NDArray[np.intp]
+
+
+class Seen(NamedTuple):
+    """What is seen in the rows of steps."""
+
+    values: Sequence[Array]  # of the signal of each extreme
+    torques: Sequence[Array | None]  # whose sign decides about it
+    may_bend: Mask  # steps in which contacts share a load
+
+
+Values = Callable[[Steps], Seen]
 
 # the last coefficient of a polynomial that misses a bend, of the largest size of the signal
 ROUGH = 1e-6
 # a step is first cut into so many parts, then where polynomials of its neighbours meet; so often at most
 CUTS, ROUNDS = 8, 6
-# shortest parts, of a step
-SHORTEST = 1e-3
+# shortest parts, of a step, and [s]
+SHORTEST, SHORTEST_TIME = 1e-3, 3e-8
+# capacities that differ by more on both sides of a torque that turns round jump there, of the larger one
+JUMP = 1e-9
 
 
 @dataclass(frozen=True, eq=False)
@@ -60,6 +74,42 @@ class Sharing:
         return found
 
 
+@dataclass(frozen=True, eq=False)
+class Inside:
+    """What of a System may bend or jump inside of steps."""
+
+    sharing: Sharing | None
+    torques: Mapping[str, int]  # of each capacity that is asked for: the column of its torque
+
+    @classmethod
+    def of(cls, system: System, ones: Sequence[Extreme]) -> Inside | None:
+        """That of extremes, None where there is none."""
+        known, torques = wiring(system), dict[str, int]()
+        for number, contact in enumerate(known.contacts):
+            torques[f"{contact.name}.capacity"] = known.columns["contact_torque"].start + number
+        kept = {one.signal: torques[one.signal] for one in ones if one.signal in torques}
+        sharing = Sharing.of(system) if ones else None
+        return cls(sharing, kept) if sharing is not None or kept else None
+
+    @property
+    def columns(self) -> tuple[int, ...]:
+        """Those of a row that are looked at."""
+        return (*(self.sharing.columns if self.sharing is not None else ()), *self.torques.values())
+
+    def seen(self, ones: Sequence[Extreme], values: Sequence[Array], rows: Array, places: Places) -> Seen:
+        """What is seen in steps.
+
+        Parameters: values of the signals; rows, of which those of each step are at `places`: numbers of `columns`.
+        """
+        width = len(self.sharing.columns) if self.sharing is not None else 0
+        order = {name: width + place for place, name in enumerate(self.torques)}
+        torques = [rows[places, order[one.signal]] if one.signal in order else None for one in ones]
+        # beside its middle no event is near
+        middle = rows[places[:, 2], :width]
+        bends = self.sharing.within(middle) if self.sharing is not None else np.zeros(len(places), dtype=bool)
+        return Seen(values, torques, bends)
+
+
 def _depend(rates: Array) -> bool:
     return bool(len(rates) and np.linalg.matrix_rank(rates) < len(rates))
 
@@ -68,10 +118,12 @@ def refined(steps: Steps, ones: Sequence[Extreme], values: Values) -> Steps | No
     """The steps split where signals bend near their extremes; None where they do not."""
     made = steps
     for _ in range(ROUNDS):
-        cuts, (known, may_bend) = dict[int, set[float]](), values(made)
-        for one, own in zip(ones, known, strict=True):
-            for step in _rough(one, made, own, may_bend):
+        cuts, seen = dict[int, set[float]](), values(made)
+        for one, own, torque in zip(ones, seen.values, seen.torques, strict=True):
+            for step in _rough(one, made, own, seen.may_bend):
                 cuts.setdefault(step, set()).update(_places(made, own, step))
+            for step, place in _turns(made, own, torque) if torque is not None else ():
+                cuts.setdefault(step, set()).add(place)
         cuts = {step: places for step, places in cuts.items() if places}
         if not cuts:
             break
@@ -113,14 +165,30 @@ def _meeting(steps: Steps, values: Array, step: int) -> float | None:
         found: Array = polyval(1.0 + place * longer[0], before) - polyval((place - 1.0) * longer[1], behind)
         return found
 
+    return _zero(apart)
+
+
+def _zero(f: Callable[[Array], Array]) -> float | None:
+    """Where a function of a place in a step passes zero; None where both ends have one sign."""
     low, high = 0.0, 1.0
-    if apart(np.array(low)) * apart(np.array(high)) > 0.0:
+    if f(np.array(low)) * f(np.array(high)) > 0.0:
         return None
     for _ in range(50):
         middle = 0.5 * (low + high)
-        below = apart(np.array(low)) * apart(np.array(middle)) <= 0.0
+        below = f(np.array(low)) * f(np.array(middle)) <= 0.0
         low, high = (low, middle) if below else (middle, high)
     return 0.5 * (low + high)
+
+
+def _turns(steps: Steps, capacity: Array, torque: Array) -> Iterator[tuple[int, float]]:
+    """Steps in which a torque turns round and a capacity jumps with it, and where."""
+    ends, size = capacity[:, [0, -1]], np.abs(capacity).max(axis=1)
+    turns = (torque[:, 0] > 0.0) != (torque[:, -1] > 0.0)
+    for step in np.flatnonzero(turns & (np.abs(np.diff(ends, axis=1)[:, 0]) > JUMP * size)).tolist():
+        place = _zero(partial(polyval, c=steps.basis[step] @ torque[step]))
+        least = SHORTEST_TIME * (1.0 + abs(float(steps.begin[step]))) / float(steps.length[step])
+        if place is not None and least < place < 1.0 - least:
+            yield step, place
 
 
 def split(steps: Steps, cuts: Mapping[int, set[float]]) -> Steps:

@@ -17,7 +17,7 @@ from clutchwork.gradients.functional import Functional
 from clutchwork.gradients.knots import knots
 from clutchwork.gradients.plain import Detail, PlainRuns
 from clutchwork.gradients.primal import Knots, Primal
-from clutchwork.gradients.refined import Sharing
+from clutchwork.gradients.refined import Inside
 from clutchwork.gradients.signals_at import SignalsAt
 from clutchwork.gradients.steps import NO_STEPS, Steps
 from clutchwork.gradients.task import GradientTask
@@ -26,6 +26,7 @@ from clutchwork.results.forms import all_reads
 from clutchwork.results.gradient import NoGradient
 from clutchwork.run.simulation import told
 from clutchwork.sweeps.batch import CoreOutputs
+from clutchwork.sweeps.outputs import Extreme
 
 Array = NDArray[np.float64]
 
@@ -97,7 +98,8 @@ class Runs:
     @cached_property
     def plain(self) -> PlainRuns:
         """Runs without derivatives."""
-        return PlainRuns(self.wanted, self._options, self.task.threads, Sharing.of(self.task.system))
+        ones = [one for one in self.wanted.outputs.values() if isinstance(one, Extreme)]
+        return PlainRuns(self.wanted, self._options, self.task.threads, Inside.of(self.task.system, ones))
 
     def sizes(self, x: Array) -> Array:
         """Sizes of the numbers at a point."""

@@ -105,6 +105,9 @@ class Settling:
             nearer, is_run = self._beside(numbers, beside, NEARER * STEP)
             limits = (nearer - NEARER * there) / (1.0 - NEARER)
             nearly = np.abs(nearer - there) <= NEARLY * np.maximum(np.abs(nearer), np.abs(there))
+            # one that falls with the distance itself, as that of a square at zero, ends there
+            falls = np.abs(nearer - NEARER * there) <= NEARLY * NEARER * np.abs(there)
+            nearly, limits = nearly | falls, np.where(falls, 0.0, limits)
             nearly |= np.array([self._is_one(*both, sizes) for both in zip(there, nearer, strict=True)])
             # what is neither the same nor a line has another kink nearby, up to which alone it would hold
             there = np.where(nearly, limits, np.nan)

@@ -146,8 +146,11 @@ struct Taped {
   friend CLUTCHWORK_HOT void add_times(double a, const Taped& x, Taped& y) { y = chain(y, 1, x, a, y.v + a * x.v); }
   /// A row keeps the number on the tape.
   friend CLUTCHWORK_HOT void keep(const Taped& x, double* to) { to[0] = x.id; }
-  /// Not known before the tape is followed back.
-  friend double largest_difference(const Taped&, const Taped&) { return 0; }
+  /// Of the one direction beside the tape, but for round-off.
+  friend double largest_difference(const Taped& a, const Taped& b) {
+    const double apart = abs(a.probe - b.probe);
+    return apart > 1e-9 * (abs(a.probe) + abs(b.probe)) ? apart : 0;
+  }
 };
 
 /// Derivatives that are a weighted sum of numbers on the tape, noted as one where they are used.

@@ -128,6 +128,28 @@ void note_graze(Workspace<T>& ws, int what, int component, double index, const T
   if (m.n < Moved<T>::room) m.graze[m.n++] = {ws.time, double(what), double(component), index, apart};
 }
 
+/// Borders of pieces on which the run begins, and which move with the numbers: on which side it begins is open.
+template <class Form>
+void note_borders(Form& form, Step<Form>& step) {
+  constexpr double near = 1e-9;
+  using T = typename Form::Scalar;
+  Workspace<T>& ws = form.ws;
+  GuardList::each([&](auto tag, int place) {
+    using G = typename decltype(tag)::type;
+    if constexpr (requires { G::each_border(ws, [](int) {}); }) {
+      G::each_border(ws, [&](int index) {
+        Hit hit;
+        hit.what = place, hit.index = index, ws.in.time = -infinity;
+        const T margin = G::at(form, step, hit, ws.time, step.y0(), hit.who);
+        if (abs(value(margin)) > near * G::scale(form, hit, step.y0())) return;
+        note_graze(ws, place, G::component(ws, hit), infinity, margin);
+        ws.moved.last = T(0);
+      });
+    }
+  });
+  ws.in.time = -infinity;
+}
+
 /// Contacts that come to rest with the one that was hit, but at another instant where a number changes: by how much
 /// their instants differ is noted.
 template <class T>

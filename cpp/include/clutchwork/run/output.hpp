@@ -261,7 +261,7 @@ Status emit_start(Form& form, Step<Form>& step, Sink& sink, bool fresh) {
   return emit(form, step, 0.0, step.t, sink);
 }
 
-/// Whether speeds, accelerations or torques in the last row are others than in the row before it, by more than
+/// Whether speeds, accelerations, torques or states in the last row are others than in the row before it, by more than
 /// round-off; of a shaft without inertia, before it that of the interpolant, by more than that may miss.
 template <class T>
 bool row_jumps(const Workspace<T>& ws, const Sink& sink) {
@@ -276,6 +276,10 @@ bool row_jumps(const Workspace<T>& ws, const Sink& sink) {
   };
   const auto round_off = [](std::int64_t) { return 1e-9; };
   const auto of_node = [&](std::int64_t n) { return value(ws.sys.inertia[n]) > 0 ? 1e-9 : 1e-4; };
+  // a state that is set may be read where no torque follows it yet, as the deflection of a tyre that leaves the road
+  for (std::int64_t i = ws.row.state; i < ws.row.state + ws.sys.states; ++i) {
+    if (jumps(i, 1, round_off)) return true;
+  }
   // speeds jump where an impulse came before, at the same instant
   return jumps(ws.row.speed, ws.sys.nodes, of_node) || jumps(ws.row.acceleration, ws.sys.nodes, of_node) ||
          jumps(ws.row.element_torque, ws.sys.elements, round_off) ||

@@ -16,7 +16,8 @@ struct Graze {
   double what;       ///< Hit::What, -1: knots of signals
   double component;  ///< elements, then contacts; -1: none
   double index;      ///< [1/s] size of its time derivative over its scale
-  double together;   ///< [s] largest difference of the derivatives of two events at this instant, 0: there are none
+  double together;   ///< [s] largest difference of the derivatives of two events at this instant, 0: there are none;
+                     ///< at the start of the run those of the event, or of a margin, as it does not move
 };
 
 inline constexpr int graze_size = 5;

@@ -129,6 +129,13 @@ struct LineCrossing {
   static bool watches(const Workspace<T>& ws) {
     return ws.guard.n_lines > 0;
   }
+  /// Call f for each kink; a slip that is zero where a run begins is seen by its contact.
+  template <class T, class F>
+  static void each_border(const Workspace<T>& ws, F&& f) {
+    for (int i = 0; i < ws.guard.n_lines; ++i) {
+      if (ws.guard.line[i].kind == LineGuard::edge) f(i);
+    }
+  }
   template <class Form>
   CLUTCHWORK_INLINE static void find(Form& form, Step<Form>& step, Hit& hit) {
     auto& ws = form.ws;

@@ -14,7 +14,7 @@ namespace clutchwork {
 /// 1
 struct LineFlip {
   static constexpr const char* name = "flip";
-  static constexpr Effect effect = Effect::other;
+  static constexpr Effect effect = Effect::decides;
 
   template <class T>
   static bool watches(const Workspace<T>& ws) {

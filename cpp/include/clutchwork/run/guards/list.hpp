@@ -20,7 +20,8 @@
 /// where in a step it is first, and what happens then
 /// (`settle`). For derivatives it says how it follows from time and state (`at`: zero at the event), over what size it
 /// is measured (`scale`) and whose it is (`component`). It may list what it watches where modes begin (`watch`), take
-/// the state to where it was hit (`arrive`), and know its time derivative (`rate`).
+/// the state to where it was hit (`arrive`), know its time derivative (`rate`), and
+/// list the borders of pieces that a run may begin on (`each_border`).
 namespace clutchwork {
 
 template <class... G>

@@ -104,6 +104,10 @@ struct PieceEnd : OwnScale {
       if (is_switching(ws.branch[k])) ws.guard.switching[ws.guard.n_switching++] = k;
     }
   }
+  template <class T, class F>
+  static void each_border(const Workspace<T>& ws, F&& f) {
+    for (int i = 0; i < ws.guard.n_switching; ++i) f(ws.guard.switching[i]);
+  }
   template <class Form>
   [[gnu::noinline]] static void find(Form& form, Step<Form>& step, Hit& hit) {
     auto& ws = form.ws;

@@ -24,6 +24,10 @@ struct ProcessEnd : OwnScale, OfNone {
   static void watch(Workspace<T>& ws) {
     list_processes(ws);
   }
+  template <class T, class F>
+  static void each_border(const Workspace<T>& ws, F&& f) {
+    for (int i = 0; i < ws.guard.n_processes; ++i) f(ws.guard.process[i]);
+  }
   template <class Form>
   [[gnu::noinline]] static void find(Form& form, Step<Form>& step, Hit& hit) {
     using T = typename Form::Scalar;
