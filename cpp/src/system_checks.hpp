@@ -131,11 +131,38 @@ inline bool process_fits(const System& s, std::int64_t i) {
   return good;
 }
 
+/// Whether an input of a process draws from one that gathers, and those of one process stand together.
+inline bool draw_fits(const System& s, std::int64_t j) {
+  const auto inside = [&](std::int64_t c) { return c >= 0 && c < s.processes; };
+  const std::int64_t c = s.draw_process[j], from = s.draw_from[j];
+  if (!inside(c) || !inside(from) || (j > 0 && s.draw_process[j - 1] > c)) return false;
+  const bool gathers = visit_process(s.process_kind[from], [](auto tag) { return bool(decltype(tag)::type::gathers); });
+  return gathers && visit_process(s.process_kind[c], [&](auto tag) {
+           using E = typename decltype(tag)::type;
+           return DrawingProcess<E> && s.draw_input[j] >= 0 && s.draw_input[j] < E::inputs;
+         });
+}
+
+/// Whether sums of flows are read by their own process alone, as its first input.
+inline bool sums_fit(const System& s) {
+  const std::int64_t first = s.inputs + s.shared + 3 * (s.elements + s.contacts);
+  std::int64_t found = 0, own = 0;
+  for (std::int64_t i = 0; i < s.n_input_refs; ++i) found += s.input_refs[i] >= first;
+  for (std::int64_t c = 0; c < s.processes; ++c) {
+    const bool gathers = visit_process(s.process_kind[c], [](auto tag) { return bool(decltype(tag)::type::gathers); });
+    if (gathers && s.input_refs[s.process_input[c]] != first + c) return false;
+    own += gathers;
+  }
+  return found == own;
+}
+
 /// As in_range, for what concerns the shared states.
 inline bool shared_in_range(const System& s) {
   bool good = s.shared <= s.states;
   for (std::int64_t i = 0; good && i < s.flows; ++i) good = flow_fits(s, i);
   for (std::int64_t i = 0; good && i < s.processes; ++i) good = process_fits(s, i);
+  for (std::int64_t j = 0; good && j < s.draws; ++j) good = draw_fits(s, j);
+  good = good && sums_fit(s);
   for (std::int64_t i = 0; good && i < s.supplies; ++i) {
     good = s.supply_element[i] >= 0 && s.supply_element[i] < s.elements;
   }
@@ -183,7 +210,7 @@ inline bool offsets_in_range(const System& s) {
                       within(s.contact_input, nc, 0, s.n_input_refs) &&
                       within(s.contact_law_input, nc, 0, s.n_input_refs);
   return params && states && inputs && within(s.prescribed_input, s.prescribed, 0, s.inputs - 1) &&
-         within(s.input_refs, s.n_input_refs, 0, s.inputs + s.shared + 3 * (ne + nc) - 1);
+         within(s.input_refs, s.n_input_refs, 0, s.inputs + s.shared + 3 * (ne + nc) + s.processes - 1);
 }
 
 /// Whether the ways of the elements follow each other, those of one with the same offsets.

@@ -98,8 +98,9 @@ class Component:
 
     @property
     def inputs(self) -> list[str]:
-        """Names of its inputs; a flow has the temperatures of its two ends first."""
+        """Names of its inputs; a flow has the temperatures of its two ends first, one that gathers their sum."""
         ends = [item.name for item, _ in specs(self.cls, "thermal")] if self.role is Role.FLOW else []
+        ends += ["gathered"] if self.cls.role is Role.PROCESS and self.cls.gathers else []
         return ends + [names[0] for names, _ in inputs(self.cls)]
 
     @property

@@ -49,6 +49,8 @@ def base(component: Component) -> Iterator[str]:
     yield f"  enum class Input : int {enumerators(component.inputs)};"
     yield f"  enum State : int {enumerators(component.states)};"
     yield f"  static constexpr int inputs = {len(component.inputs)}, states = {len(component.states)};"
+    if component.role is Role.PROCESS:
+        yield f"  static constexpr bool gathers = {str(component.cls.gathers).lower()};"
     if component.ways:
         yield f"  enum class Way : int {enumerators(component.ways)};"
     if component.role is Role.TORQUE:

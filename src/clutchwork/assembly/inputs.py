@@ -28,7 +28,7 @@ SPEED = Spec("signal", "rad/s", "speed")
 # what the temperature of an ambient is, which has no declaration of its own
 TEMPERATURE = Spec("signal", "K", "temperature of an ambient", above=0.0)
 # what an input may be, in the order of the numbers of its references
-SORTS = ("input", "shared", "rate", "heat", "supply")
+SORTS = ("input", "shared", "rate", "heat", "supply", "sum")
 
 
 @dataclass
@@ -53,6 +53,8 @@ class Wires:
         offset = len(self.refs)
         if role(component) is Role.FLOW:
             self.refs += [self._reference(node) for node in thermal_ports(component).values()]
+        elif type(component).gathers:
+            self.refs.append(("sum", self.places.processes[component.name]))
         self._connect(component, component, "")
         return offset
 
@@ -99,8 +101,8 @@ class Wires:
 
     def arrays(self) -> dict[str, Any]:
         """References and the pieces of all signals, one after another."""
-        acting = len(self.places.directions)
-        sizes = (len(self.inputs), len(self.places.shared), acting, acting)
+        acting = self.places.ways
+        sizes = (len(self.inputs), len(self.places.shared), acting, acting, acting)
         base = dict(zip(SORTS, accumulate(sizes, initial=0), strict=True))
         pieces = [item.signal.segments() for item in self.inputs]
         counts = [len(part) for part in pieces]

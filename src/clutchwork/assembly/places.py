@@ -19,6 +19,8 @@ class SharedNumbers:
 
     shared: Mapping[str, int]  # thermal node, or "process.state"
     directions: Mapping[str, int]  # torque element or contact
+    processes: Mapping[str, int]
+    ways: int  # directions, each way of an element counted
 
     def of(self, value: Any) -> tuple[str, int]:
         """Sort and number of a reference; ambients are excluded, their temperature is a signal."""
@@ -37,4 +39,5 @@ def places(thermal: Sequence[ThermalNode], processes: Sequence[Any], acting: Seq
     for number, component in enumerate(acting):
         # of several ways the first one
         directions.setdefault(component.name, number)
-    return SharedNumbers({name: number for number, name in enumerate(names)}, directions)
+    order = {process.name: number for number, process in enumerate(processes)}
+    return SharedNumbers({name: number for number, name in enumerate(names)}, directions, order, len(acting))

@@ -6,8 +6,10 @@ from typing import TYPE_CHECKING, Any
 
 from clutchwork.base.classes import dataclass
 from clutchwork.declare.core import number
+from clutchwork.declare.node import Component
 from clutchwork.declare.ports import thermal_ports
-from clutchwork.declare.schema import Role
+from clutchwork.declare.schema import Role, inputs
+from clutchwork.model.parts import state_name
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -52,10 +54,29 @@ class Shared:
             "process_param": [pools.add(process, process.name) for process in self.processes],
             "process_input": [wires.connect(process) for process in self.processes],
             "process_state": first,
+            **self._draws(wires),
             "shared_scale": scale,
             "shared_offset": offset,
             "initial_state": states,
         }
+
+    def _draws(self, wires: Wires) -> dict[str, Any]:
+        """Inputs of processes behind which one stands that gathers."""
+        gathering = {process.name for process in self.processes if type(process).gathers}
+        found = list[tuple[int, int, int]]()
+        for number, process in enumerate(self.processes):
+            for place, (names, spec) in enumerate(inputs(type(process))):
+                value = getattr(process, names[0])
+                owner = state_name(value).rpartition(".")[0] if spec.draws and is_state(value) else ""
+                if owner in gathering:
+                    found.append((number, place, wires.places.processes[owner]))
+        columns = zip(*found, strict=True) if found else ([], [], [])
+        return dict(zip(("draw_process", "draw_input", "draw_from"), map(list, columns), strict=True))
+
+
+def is_state(value: Any) -> bool:
+    """Whether an input is given by a state of a process."""
+    return isinstance(value, tuple | Component)
 
 
 def state_scales(process: Any) -> tuple[float, ...]:

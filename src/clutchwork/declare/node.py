@@ -233,6 +233,7 @@ class Component(Element):
     reports: ClassVar[Mapping[str, str]] = {}
     elastic: ClassVar[bool] = False  # joins its ends as a shaft does: counts as rigid in ratios of speeds
     open: ClassVar[bool] = False  # a composite whose parts are seen one by one in tables and pictures of energy
+    gathers: ClassVar[bool] = False  # of a process: an input before all others has the sum of what is drawn into it
     jumps: ClassVar[bool] = False  # a torque element whose torque jumps: its shafts need inertia, as at a contact
 
     # what an element has unless it declares a field of that name

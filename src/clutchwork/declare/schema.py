@@ -71,6 +71,7 @@ class Spec:
     instead_of: str = ""  # of an alternative: the signal that it stands for
     gain: tuple[str, ...] = ()  # of a signal: units that the parameter `gain` has when it is given
     otherwise: float | None = None  # of a signal: its value when neither it nor its alternative is given
+    draws: bool = False  # of a signal: a process that gathers gives the flow that its reader takes, by the hook `drawn`
     presses: bool = False  # of a signal: below zero it counts as zero, so that a constant below zero never acts
     flag: bool = False  # true or false in Python, 1 or 0 in the core
     fixed: bool = False  # says how many states there are: it stays while a run goes on
@@ -232,6 +233,7 @@ def signal(
     instead_of: str = "",
     otherwise: float | None = None,
     presses: bool = False,
+    draws: bool = False,
     example: float | None = None,
 ) -> Any:
     """An input: a number, a Signal, a thermal node (its temperature), a process (its first state), or (process, state).
@@ -244,11 +246,13 @@ def signal(
 
     With `instead_of` it is another way to give the signal of that name: exactly one of them is given, or
     none where that signal has a value `otherwise`. With `presses` a constant below zero is warned of; it stands in
-    pictures, and so does a signal with a `gain`, the units of the parameter that multiplies it.
+    pictures, and so does a signal with a `gain`, the units of the parameter that multiplies it. One that `draws` is a
+    port of a process: where a process that `gathers` gives it, that loses the flow which the hook `drawn` says.
     """
     what = "alternative" if instead_of else "signal"
     ranges: dict[str, Any] = {"above": above, "at_least": at_least, "below": below, "at_most": at_most}
     ways: dict[str, Any] = {"gain": gain, "instead_of": instead_of, "otherwise": otherwise, "presses": presses}
+    ways["draws"] = draws
     return _field(Spec(what, unit, doc, default is None, **ranges, **ways, units=units, example=example), default)
 
 
@@ -453,7 +457,8 @@ def compiled_text(cls: Any) -> str:
     names = ",".join(_field_text(f.name, s) for f, s in specs(cls, *WORDS, "signal"))
     sort = "" if cls.role is not Role.LAW else " sticks" if cls.sticks else " compliant"
     ways = "".join(f" {way.name}" for way in cls.ways) if len(cls.ways) > 1 else ""
-    return f"{cls.role.value} {cls.kind} {names} {len(cls.states)}{sort}{ways}"
+    gathers = " gathers" if getattr(cls, "gathers", False) else ""
+    return f"{cls.role.value} {cls.kind} {names} {len(cls.states)}{sort}{ways}{gathers}"
 
 
 def _field_text(name: str, spec: Spec) -> str:

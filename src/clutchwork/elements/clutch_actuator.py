@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from math import sqrt
 
 from clutchwork.declare import Component, Found, Role, SignalLike, State, component, option, param, signal
@@ -12,8 +13,9 @@ from clutchwork.declare import Component, Found, Role, SignalLike, State, compon
     states=(
         State("force", "N", "force on the plates; below zero: `contact_rate` times the way left to the kiss point"),
         State("pressure", "Pa", "pressure on the piston"),
+        State("loss", "J", "heat of its orifice and its seal since the start"),
     ),
-    hooks=("margin", "cross"),
+    hooks=("margin", "cross", "drawn"),
 )
 class ClutchActuator(Component):
     """Piston that a supply fills through an orifice against its return spring, until it meets the plates.
@@ -30,7 +32,7 @@ class ClutchActuator(Component):
     Source: R. Isermann, Mechatronic Systems, Springer 2005, section 10.3.
     """
 
-    supply_pressure: SignalLike = signal("Pa", "pressure before the orifice", at_least=0.0, example=1e6)
+    supply_pressure: SignalLike = signal("Pa", "pressure before the orifice", at_least=0.0, draws=True, example=1e6)
     orifice_area: float = param("m2", "area of the orifice", above=0.0, example=2e-6)
     piston_area: float = param("m2", "area of the piston", above=0.0, example=6e-3)
     preload: float = param("N", "force of the return spring at the stop", at_least=0.0, example=400.0)
@@ -68,8 +70,16 @@ class ClutchActuator(Component):
         return [("initial_pressure", fault, "remove it: the springs give the pressure there")]
 
     def initial_states(self) -> tuple[float, ...]:
-        """Force on the plates [N] and pressure [Pa] at the start."""
+        """Force on the plates [N] and pressure [Pa] at the start; no heat yet."""
         beyond = self.initial_stroke - self.kiss_stroke
         springs = self.preload + self.spring_rate * self.initial_stroke + self.contact_rate * max(beyond, 0.0)
         pressure = springs / self.piston_area if self.initial_stroke else self.initial_pressure
-        return (self.contact_rate * beyond, pressure)
+        return (self.contact_rate * beyond, pressure, 0.0)
+
+    def stored(self, states: Sequence[float], torque: float = 0.0) -> float:  # noqa: ARG002, a piston has none
+        """Energy [J] of its springs, the plates and the compressed oil, by its states."""
+        force, pressure = states[0], states[1]
+        stroke = self.kiss_stroke + force / self.contact_rate
+        springs = (self.preload + 0.5 * self.spring_rate * stroke) * stroke
+        plates = 0.5 * max(force, 0.0) ** 2 / self.contact_rate
+        return springs + plates + 0.5 * self.volume / self.bulk_modulus * pressure**2

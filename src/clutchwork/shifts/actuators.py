@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
@@ -10,6 +10,13 @@ from clutchwork.base.classes import dataclass
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
+
+
+class Learnt(NamedTuple):
+    """What shifts have shown of an element behind a piston: its fill time [s], the command at which it touches."""
+
+    fill_time: float
+    kiss: float
 
 
 @dataclass(frozen=True)

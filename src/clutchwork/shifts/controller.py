@@ -10,6 +10,7 @@ from clutchwork.base.errors import UseError
 from clutchwork.base.frozen import Frozen
 from clutchwork.base.quote import listed, quote
 from clutchwork.shifts.actuation import Actuation
+from clutchwork.shifts.actuators import Learnt
 from clutchwork.shifts.adaptation import adapt
 from clutchwork.shifts.choice import GearChoice
 from clutchwork.shifts.course import ExchangeSequence
@@ -69,7 +70,7 @@ class ShiftController:
         chosen: calibration of single shifts, ("3", "4") or a kind such as "power-off upshift"
         gear: the gear that is in at the start; "N": none
         prefix: path of the transmission in the driveline: signals are `<prefix>.<element>.pressure`
-        known: fill times [s] that `learnt` of another controller said, by default those of the plant
+        known: what `learnt` of another controller said, or fill times [s] alone; by default that of the plant
 
     What it did is in `records`, what it asks of the engine in `torque_factor` (a factor of its torque) and `blip`
     (throttle on top of that of the driver).
@@ -83,7 +84,7 @@ class ShiftController:
     gear: str = NEUTRAL
     prefix: str = "gearbox"
     pause: float = 0.3  # s, from the end of a shift to the next one that the schedule asks for
-    known: Mapping[str, float] = field(default_factory=dict)  # s
+    known: Mapping[str, Learnt | float] = field(default_factory=dict)
     # what it remembers
     records: list[ShiftRecord] = field(default_factory=list)
     _left: list[Exchange | Handover] = field(default_factory=list)
@@ -100,7 +101,8 @@ class ShiftController:
         self._do = Actuation(self.box, self.plant, self.prefix, rivals, self.settings.cone)
         self._do.only(self.gear, self.settings)
         for name, one in self._do.drivers.items():
-            one.fill_time = self.known.get(name, one.fill_time)
+            known = self.known.get(name, one.fill_time)
+            one.fill_time, one.kiss = known if isinstance(known, tuple) else (known, one.kiss)
         self._do.start()
         self._ended = -self.pause
         if self.gear == NEUTRAL and self.settings.launch_speed and self.schedule is not None:
@@ -165,9 +167,9 @@ class ShiftController:
         return 0.0 if self._course is None else self._course.blip
 
     @property
-    def learnt(self) -> dict[str, float]:
-        """Fill time of each element behind a piston [s], as shifts have shown it: `known` of the next controller."""
-        return {name: one.fill_time for name, one in self._do.drivers.items()}
+    def learnt(self) -> dict[str, Learnt]:
+        """Fill time and kiss point of each element behind a piston, as shifts have shown: `known` of the next one."""
+        return {name: Learnt(one.fill_time, one.kiss) for name, one in self._do.drivers.items()}
 
     @property
     def commands(self) -> dict[str, float]:

@@ -25,6 +25,7 @@ class ActuatorDriver:
 
     of: ElementActuator
     fill_time: float  # s, as it was learnt
+    kiss: float  # command at which it touches, as it was learnt
     level: float = 0.0  # of the filling, 0 to 1
     torque: float = 0.0  # N m, as it should be at present
     _fills: float = 0.0  # rate of the filling that was commanded, over that of the full command
@@ -44,7 +45,12 @@ class ActuatorDriver:
         if self.level < 1.0 - FULL:
             return self._fill(period)
         self._asked = self._lead(torque, period)
-        return of.command(max(TOUCH * of.most, self._asked))
+        return self.at(max(TOUCH * of.most, self._asked))
+
+    def at(self, torque: float) -> float:
+        """Command at which it carries a torque [N m] in the long run: that of the table, moved with the kiss point."""
+        ends = sorted((self.of.commands[0], self.of.commands[-1]))
+        return min(ends[1], max(ends[0], self.of.command(torque) + self.kiss - self.of.kiss))
 
     def _pass(self, passed: float) -> None:
         """What the last command did since then."""
@@ -55,7 +61,7 @@ class ActuatorDriver:
 
     def _fill(self, period: float) -> float:
         """Full command while the piston fills; in its last part as much as is left of it."""
-        of, hold = self.of, self.of.command(TOUCH * self.of.most)
+        of, hold = self.of, self.at(TOUCH * self.of.most)
         self._fills = min(1.0, (1.0 - self.level) * self.fill_time / period) if period else 1.0
         return hold + self._fills * (of.commands[-1] - hold)
 

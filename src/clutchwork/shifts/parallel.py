@@ -39,6 +39,23 @@ COMES_BACK = 0.4
 NEEDED = 20.0
 # torque of an element that counts as none, as a share of that of the input
 NOTHING = 1e-3
+# part of the inertia phase in which the loop has settled and the slip is not over yet
+SETTLED = (0.4, 0.95)
+
+
+@dataclass
+class Missed:
+    """Means of what an element carried in the inertia phase, and of what the loop added to that [N m]."""
+
+    torque: float = 0.0
+    added: float = 0.0
+    looks: int = 0
+
+    def add(self, torque: float, added: float) -> None:
+        """One more look."""
+        self.looks += 1
+        self.torque += (torque - self.torque) / self.looks
+        self.added += (added - self.added) / self.looks
 
 
 @dataclass
@@ -66,6 +83,7 @@ class ParallelSequence:
     instants: dict[str, float] = field(default_factory=dict)  # s
     _now: float = 0.0  # s
     takes: tuple[str, ...] = ()  # those that took the torque over
+    missed: dict[str, Missed] = field(default_factory=dict)  # of those that carried in the inertia phase
     _outputs: tuple[float, ...] = ()  # rad/s
     _held: dict[str, float] = field(default_factory=dict)  # Pa, of what opens, at the beginning
     _start: Array = field(default_factory=lambda: np.zeros(0))  # y where the inertia phase begins [rad/s]
@@ -254,6 +272,12 @@ class ParallelSequence:
             if jolt > self.jolt:
                 self.jolt, self.instants["jolt"] = jolt, self._now
 
+    def _watch_torques(self, x: float, torques: Mapping[str, float], planned: Mapping[str, float]) -> None:
+        """What the loop has to add to torques that were right if the commands were: the kiss point is elsewhere."""
+        for name, torque in torques.items() if SETTLED[0] < x < SETTLED[1] else ():
+            if torque > 0.0 and planned[name] > 0.0:
+                self.missed.setdefault(name, Missed()).add(torque, torque - planned[name])
+
     def _y(self, now: Measured) -> Array:
         return np.array([now.slips[name] for name in self.one.on])
 
@@ -328,6 +352,7 @@ class ParallelSequence:
         torques, missed = self._taken(force, now)
         if with_.closed_loop and missed <= 1e-6:
             self._integral = self._integral + with_.integral * error * period
+            self._watch_torques(x, torques, self._taken(force - one.inertia @ (law - rate), now)[0])
         return torques
 
     def _ask(self, work: float, now: Measured) -> None:

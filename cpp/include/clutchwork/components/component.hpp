@@ -217,6 +217,13 @@ concept SwitchingProcess =
       { E::cross(p, at, 0, state) } -> std::same_as<int>;
     };
 
+/// Process whose inputs draw: `flow[i]` is what it takes from the process that gives input i. A flow looks at states,
+/// signals and rates alone.
+template <class E>
+concept DrawingProcess = requires(const typename E::template Params<double>& p, const At<double>& at, double* flow) {
+  { E::drawn(p, at, flow) } -> std::same_as<void>;
+};
+
 /// Law that sticks exactly: kinetic coefficient over slip (slip >= 0, continued smoothly below), static at rest.
 template <class L>
 concept StickingLaw = requires(const typename L::template Params<double>& p, const At<double>& at) {

@@ -349,6 +349,9 @@ void load_inputs(Workspace<T>& ws, double t) {
     if (i >= ws.sys.inputs) {
       if (i < ws.sys.inputs + ws.sys.shared) {
         ws.in.shared_ref[ws.in.n_shared_refs++] = ref;
+      } else if (i >= ws.sys.inputs + ws.sys.shared + 3 * ws.n_directions) {
+        // a sum of flows, which is made where those are known
+        ws.in.u[ref] = ws.in.du[ref] = T(0);
       } else {
         ws.in.direction_ref[ws.in.n_direction_refs++] = ref;
         const bool rate = i < ws.sys.inputs + ws.sys.shared + ws.sys.elements;

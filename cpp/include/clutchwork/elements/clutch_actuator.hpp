@@ -61,22 +61,41 @@ struct ClutchActuator : declared::ClutchActuator {
     return value(p.volume) > 0 ? at.state[pressure] : at.input[Input::supply_pressure];
   }
 
+  /// Flow into the piston: of one that rests what compresses its oil.
+  template <class T, class S>
+  static S inflow(const Params<T>& p, const At<S>& at) {
+    const Motion now = motion(at.piece);
+    const S supply = at.input[Input::supply_pressure];
+    if (now == out || now == back) return flow(p, supply - moving_pressure(p, at));
+    return value(p.volume) > 0 ? flow(p, supply - at.state[pressure]) : S(0);
+  }
+  template <class T, class S>
+  static S moving_pressure(const Params<T>& p, const At<S>& at) {
+    return motion(at.piece) == out ? lifting(p, at) : falling(p, at);
+  }
+  template <class T, class S>
+  static void drawn(const Params<T>& p, const At<S>& at, S* flows) {
+    flows[int(Input::supply_pressure)] = inflow(p, at);
+  }
+
   template <class T, class S>
   static void state_rates(const Params<T>& p, const At<S>& at, S* rates) {
     const Motion now = motion(at.piece);
-    const S supply = at.input[Input::supply_pressure];
+    const S supply = at.input[Input::supply_pressure], filling = inflow(p, at);
     if (now == stopped || now == stuck) {
       rates[force] = S(0);
       const S missing = supply - at.state[pressure];
       // what is seen of a pressure that follows at once
-      rates[pressure] = value(p.volume) > 0 ? flow(p, missing) * p.bulk_modulus / p.volume : missing / T(1e-4);
+      rates[pressure] = value(p.volume) > 0 ? filling * p.bulk_modulus / p.volume : missing / T(1e-4);
+      rates[loss] = filling * missing;
       return;
     }
     const T rate = stiffness(p, at.piece);
-    const S inside = now == out ? lifting(p, at) : falling(p, at);
-    const S speed = flow(p, supply - inside) / (p.piston_area + p.volume / p.bulk_modulus * rate / p.piston_area);
+    const S speed = filling / (p.piston_area + p.volume / p.bulk_modulus * rate / p.piston_area);
     rates[force] = p.contact_rate * speed;
     rates[pressure] = rate / p.piston_area * speed;
+    const S rubs = S(p.seal_friction) * (now == out ? speed : -speed);
+    rates[loss] = filling * (supply - moving_pressure(p, at)) + rubs;
   }
 
   template <class T, class S>

@@ -123,6 +123,13 @@ class LocalDerivatives {
     } else if (code < sys_.inputs + sys_.shared) {
       const int j = code - int(sys_.inputs);
       row[n_.directions + n_.states - sys_.shared + j] += value(factor) * sys_.shared_scale[j];
+    } else if (is_sum(ws_, code)) {
+      const int c = code - int(sys_.inputs + sys_.shared) - 3 * ws_.n_directions;
+      each_drawn(ws_, c, ws_.state, [&](const auto& flow, int by, int states, int inputs) {
+        for (int s = 0; s < states; ++s) row[n_.directions + sys_.process_state[by] + s] -= value(factor * flow.d[s]);
+        for (int i = 0; i < inputs; ++i)
+          add_reference(row, -factor * flow.d[states + i], int(sys_.process_input[by]) + i);
+      });
     } else {
       Read what;
       const int k = branch_behind(ws_, ref, what);

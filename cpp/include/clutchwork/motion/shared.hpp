@@ -44,6 +44,12 @@ CLUTCHWORK_HOT void inputs_with(Workspace<T>& ws, Real<T> t, const T* state) {
 /// from its supply, work and heat.
 enum class Read : int { rate, heat, supply };
 
+/// Whether a reference reads the sum of the flows into a process.
+template <class T>
+bool is_sum(const Workspace<T>& ws, int code) {
+  return code >= ws.sys.inputs + ws.sys.shared + 3 * ws.n_directions;
+}
+
 /// Where such a reference points: its branch, -1 while that is locked.
 template <class T>
 int branch_behind(const Workspace<T>& ws, int ref, Read& what) {
@@ -105,6 +111,49 @@ T flow_value(const Workspace<T>& ws, int f) {
   });
 }
 
+/// Sums of the flows into processes that gather, from states and inputs: docs/theory/hydraulics.md (5).
+template <class T, class S>
+void gather(const Workspace<T>& ws, const S* state, S* input) {
+  const auto& sys = ws.sys;
+  for (int j = 0; j < sys.draws; ++j) input[sys.process_input[sys.draw_from[j]]] = S(T(0));
+  for (int j = 0; j < sys.draws;) {
+    const int c = sys.draw_process[j];
+    visit_process(sys.process_kind[c], [&](auto tag) {
+      using E = typename decltype(tag)::type;
+      if constexpr (DrawingProcess<E>) {
+        const auto& p = *reinterpret_cast<const typename E::template Params<T>*>(ws.params + sys.process_param[c]);
+        S flow[E::inputs];
+        E::drawn(p, process_at<T, S>(ws, c, state + sys.process_state[c], input + sys.process_input[c]), flow);
+        for (; j < sys.draws && sys.draw_process[j] == c; ++j)
+          input[sys.process_input[sys.draw_from[j]]] -= flow[sys.draw_input[j]];
+      }
+    });
+  }
+}
+
+/// Calls f(flow, process, its states, its inputs) for each flow that leaves a process, with its derivatives by the
+/// states and then by the inputs of the one that draws.
+template <class T, class F>
+void each_drawn(const Workspace<T>& ws, int from, const T* state, F&& f) {
+  const auto& sys = ws.sys;
+  for (int j = 0; j < sys.draws; ++j) {
+    if (sys.draw_from[j] != from) continue;
+    const int c = sys.draw_process[j];
+    visit_process(sys.process_kind[c], [&](auto tag) {
+      using E = typename decltype(tag)::type;
+      if constexpr (DrawingProcess<E>) {
+        using S = Dual<T, E::states + most_inputs>;
+        S input[most_inputs], own[E::states], flow[E::inputs];
+        for (int i = 0; i < E::inputs; ++i) input[i] = S::variable(ws.in.u[sys.process_input[c] + i], E::states + i);
+        for (int i = 0; i < E::states; ++i) own[i] = S::variable(state[sys.process_state[c] + i], i);
+        const auto& p = *reinterpret_cast<const typename E::template Params<T>*>(ws.params + sys.process_param[c]);
+        E::drawn(p, process_at<T, S>(ws, c, own, input), flow);
+        f(flow[sys.draw_input[j]], c, int(E::states), int(E::inputs));
+      }
+    });
+  }
+}
+
 /// Rates of the shared states at given rates and torques of the branches; `state` and `d` are all states.
 template <class T>
 [[gnu::noinline]] void shared_rates(Workspace<T>& ws, const T* rate, const T* torque, const T* state, T* d) {
@@ -130,6 +179,7 @@ template <class T>
     if (sys.flow_from[f] >= 0) x[sys.flow_from[f]] -= q;
     if (sys.flow_to[f] >= 0) x[sys.flow_to[f]] += q;
   }
+  if (sys.draws > 0) gather(ws, state, ws.in.u);
   for (int i = 0; i < sys.processes; ++i) {
     visit_process(sys.process_kind[i], [&](auto tag) {
       using E = typename decltype(tag)::type;
@@ -170,14 +220,16 @@ void torques_by_shared(Workspace<T>& ws, const T* rate, const T* state) {
 template <class T>
 struct SharedRow {
   Workspace<T>& ws;
-  T* dt;          ///< time derivatives of all state rates
-  const T* rate;  ///< of each branch
+  T* dt;           ///< time derivatives of all state rates
+  const T* rate;   ///< of each branch
+  const T* state;  ///< all of them
   int nx, ns, nd, first;
 
-  SharedRow(Workspace<T>& workspace, T* time, const T* rates)
+  SharedRow(Workspace<T>& workspace, T* time, const T* rates, const T* states)
       : ws(workspace),
         dt(time),
         rate(rates),
+        state(states),
         nx(int(ws.sys.shared)),
         ns(int(ws.sys.states)),
         nd(ws.n_directions),
@@ -205,6 +257,15 @@ struct SharedRow {
     for (int j = 0; j < nx; ++j) ws.jacobian.by_shared[i * nx + j] += by_torque * ws.jacobian.torque_by[k * nx + j];
     dt[first + i] += factor * p.torque * offset_slope(ws, k) + by_torque * p.by_time;
   }
+  /// factor times the sum of the flows into process c.
+  void add_sum(int i, T factor, int c) {
+    const auto& sys = ws.sys;
+    each_drawn(ws, c, state, [&](const auto& flow, int by, int states, int inputs) {
+      const int at = int(sys.process_state[by]) - first;
+      for (int s = 0; s < states; ++s) ws.jacobian.by_shared[i * nx + at + s] -= factor * flow.d[s];
+      for (int k = 0; k < inputs; ++k) add_input(i, -factor * flow.d[states + k], int(sys.process_input[by]) + k);
+    });
+  }
   /// factor times the input that stands at a reference.
   void add_input(int i, T factor, int ref) {
     const auto& sys = ws.sys;
@@ -215,6 +276,8 @@ struct SharedRow {
     } else if (code < sys.inputs + sys.shared) {
       const int j = code - int(sys.inputs);
       ws.jacobian.by_shared[i * nx + j] += factor * T(sys.shared_scale[j]);
+    } else if (is_sum(ws, code)) {
+      add_sum(i, factor, code - int(sys.inputs + sys.shared) - 3 * nd);
     } else {
       Read what;
       const int k = branch_behind(ws, ref, what);
@@ -299,7 +362,7 @@ template <class T>
   for (int i = 0; i < nx * nd; ++i) ws.jacobian.by_rate[i] = T(0);
   for (int i = 0; i < nx * ns; ++i) ws.jacobian.by_state[i] = T(0);
   for (int i = 0; i < nx * nx; ++i) ws.jacobian.by_shared[i] = T(0);
-  SharedRow<T> row(ws, dt, rate);
+  SharedRow<T> row(ws, dt, rate, state);
   for (int h = 0; h < sys.heats; ++h) {
     const int k = ws.branch_of[sys.heat_direction[h]];
     if (k >= 0 && k < ws.n_branches) row.add_heat(sys.heat_to[h], T(sys.heat_share[h]), k);

@@ -36,7 +36,7 @@ void place_process_inputs(const Workspace<T>& ws, int first, double t, const T* 
       const std::int64_t place = sys.states - sys.shared + j;
       x = T(sys.shared_offset[j]) + T(sys.shared_scale[j]) * state[place];
       slope = T(sys.shared_scale[j]) * rates[place];
-    } else {
+    } else if (!is_sum(ws, code)) {
       Read what;
       const int k = branch_behind(ws, ref, what);
       if (what == Read::rate) x = rate(j - int(sys.shared), slope);

@@ -1,0 +1,50 @@
+#pragma once
+#include <clutchwork/components/component.hpp>
+
+/// Flow of oil through openings: docs/theory/hydraulics.md.
+namespace clutchwork {
+
+inline constexpr double bar = 1e5;  ///< [Pa] one unit of a pressure among the states of hydraulic elements
+
+/// Oil as it flows: [kg/m3], [m2/s].
+template <class S>
+struct OilNow {
+  S density, viscosity;
+};
+
+/// Flow through an opening of an area at a pressure difference u: turbulent above the transition, laminar below.
+/// docs/theory/hydraulics.md (2), (3)
+template <class T, class S>
+S opening_flow(const S& area, const T& discharge, const T& transition, const OilNow<S>& oil, const S& u) {
+  constexpr double pi = 3.14159265358979323846;
+  // square of Reynolds number times viscosity over the discharge and the hydraulic diameter
+  const S speed = transition * oil.viscosity / discharge;
+  // 1 Pa keeps it regular without viscosity
+  const S laminar = oil.density * speed * speed * T(pi / 8) / area + T(1);
+  return discharge * area * sqrt(S(2) / oil.density) * u / sqrt(sqrt(u * u + laminar * laminar));
+}
+
+/// Share of an opening that an edge uncovers, with the clearance of its bore: docs/theory/hydraulics.md (6)
+template <class T, class S>
+S uncovered(const S& way, const T& clearance) {
+  // the form that keeps its digits on either side
+  const S root = sqrt(way * way + clearance * clearance);
+  if (value(way) >= 0) return (way + root) / S(2);
+  return S(clearance * clearance) / (S(2) * (root - way));
+}
+
+/// Oil of a pump per radian [m3].
+template <class T>
+T pump_per_radian(const T& displacement) {
+  return displacement / T(6.28318530717958647692);
+}
+
+/// Friction of a pump that grows with its load, against its motion; it fades out where that is slow.
+/// docs/theory/hydraulics.md (11)
+template <class T, class S>
+S pump_friction(const T& efficiency, const T& slow, const S& ideal, const S& rate) {
+  const S size = sqrt(ideal * ideal + T(1e-12));
+  return (T(1) / efficiency - T(1)) * size * rate / sqrt(rate * rate + slow * slow);
+}
+
+}  // namespace clutchwork

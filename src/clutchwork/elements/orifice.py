@@ -1,0 +1,28 @@
+"""Orifice that oil flows through."""
+
+from __future__ import annotations
+
+from clutchwork.declare import Role, SignalLike, State, component, param, signal
+from clutchwork.elements.bases.oil import Opening
+
+
+@component(
+    Role.PROCESS, states=(State("loss", "J", "heat of the oil that went through since the start"),), hooks=("drawn",)
+)
+class Orifice(Opening):
+    """Opening between two pressures: turbulent, and laminar where the difference is small.
+
+    With `u` the pressure at the inlet less that at the outlet the flow is
+    `discharge area sqrt(2/density) u/(u^2 + laminar^2)^(1/4)`; `laminar` is the difference at which the Reynolds number
+    is `transition`. So it is regular at no difference, and grows with the viscosity. Use it for bores, leaks and filters.
+
+    Source: W. Borutzky, B. Barnard, J. Thoma 2002, doi:10.1016/S1569-190X(02)00092-8.
+    """
+
+    inlet: SignalLike = signal("Pa", "pressure before it: a volume, or a number", draws=True, example=1e6)
+    outlet: SignalLike = signal("Pa", "pressure behind it: a volume, or a number", default=0.0, draws=True)
+    area: float = param("m2", "area of the opening", above=0.0, example=2e-6)
+
+    def initial_states(self) -> tuple[float, ...]:
+        """No heat yet."""
+        return (0.0,)

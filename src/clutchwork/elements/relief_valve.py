@@ -1,0 +1,54 @@
+"""Valve that limits a pressure, or regulates it to a command."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from clutchwork.declare import Role, Signal, SignalLike, State, component, option, param, signal
+from clutchwork.elements.bases.oil import CLEARANCE, Opening
+from clutchwork.elements.bases.ratios import at_start
+from clutchwork.elements.oil_volume import BAR
+
+
+@component(
+    Role.PROCESS,
+    states=(
+        State("setting", "Pa", "pressure above which it opens, the command with its lag"),
+        State("loss", "J", "heat of the oil that went through since the start"),
+    ),
+    hooks=("drawn",),
+)
+class ReliefValve(Opening):
+    """Valve that lets oil off where the pressure is above its command: fully at `span` above it.
+
+    With a number as its command it is a relief valve, with a signal the regulator of a line pressure: it takes what the
+    pump delivers and nobody needs. What it cannot do is to raise the pressure, so that falls below the command where
+    more oil is wanted than is delivered. A `PressureValve` as its command is a solenoid with a table over its current.
+
+    Source: H. E. Merritt, Hydraulic Control Systems, Wiley 1967, chapter 9.
+    """
+
+    inlet: SignalLike = signal("Pa", "pressure that it limits: a volume", draws=True, example=1e6)
+    outlet: SignalLike = signal("Pa", "pressure that it lets off to", default=0.0, draws=True)
+    command: SignalLike = signal("Pa", "pressure at which it opens", at_least=0.0, example=1.5e6)
+    span: float = param("Pa", "pressure above its setting at which it is open", default=1e5, above=0.0)
+    area: float = param("m2", "area of the open valve", above=0.0, example=4e-5)
+    lag: float = param("s", "time constant with which the setting follows its command", default=0.01, above=0.0)
+    clearance: float = param("1", "share of the stroke that its clearance is worth", default=CLEARANCE, above=0.0)
+    initial_setting: float | None = option(
+        "Pa", "setting at the start, that of the command by default", default=None, at_least=0.0
+    )
+
+    def initial_states(self) -> tuple[float, ...]:
+        """Setting at the start [Pa]; no heat yet."""
+        return (self.initial_setting if self.initial_setting is not None else command_at_start(self.command), 0.0)
+
+    def state_scales(self) -> tuple[float, ...]:
+        """The solver follows pressures in bar."""
+        return (BAR, 1.0)
+
+
+def command_at_start(command: Any) -> float:
+    """A command [Pa] at the start: of a signal, a number or a process; 0 of anything else."""
+    known = isinstance(command, int | float | Signal) or isinstance(command, tuple) or hasattr(command, "initial_states")
+    return at_start(command) if known else 0.0
