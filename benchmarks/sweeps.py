@@ -12,6 +12,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 import clutchwork as cw
+from benchmarks.peers.by_c import core_objects
 from benchmarks.report import Row
 from benchmarks.timing import ratio, rounds, wall
 from support import six_speed
@@ -42,11 +43,9 @@ def sweep(system: cw.System, variants: int, threads: int, outputs: Any = "w8.spe
 
 def loop(folder: Path, system: cw.System, variants: int) -> Callable[[int], Taken] | None:
     """The loop in C++ with the core of this build; None where there is none."""
-    builds = (ROOT / "build").glob("cp3*/core_objects.txt")
-    newest = max(builds, key=lambda path: path.stat().st_mtime, default=None)
-    if newest is None:
+    objects = core_objects()
+    if not objects:
         return None
-    objects = newest.read_text(encoding="utf-8").split()
     program, data = folder / "sweep_loop", folder / "system"
     command = [
         "c++",

@@ -2,19 +2,19 @@
 
 from __future__ import annotations
 
-import re
 import shutil
 import subprocess
 from collections.abc import Iterator
 from importlib import util
 from pathlib import Path
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 
 from benchmarks.peers import equations
 from benchmarks.peers.driver import FOLDER
 
+ROOT = Path(__file__).resolve().parents[2]
 MISSING = "not installed: apt install libsundials-dev, or pip install scikit-sundae"
 METHODS = {"Adams": 1, "BDF": 2}
 # what cvode.c calls, and what that needs
@@ -89,16 +89,38 @@ def _said(program: Path, *words: str) -> str:
     return subprocess.run([str(program), *words], capture_output=True, text=True, check=True).stdout
 
 
-def floor(folder: Path) -> Path:
-    """Build floor.cpp; the program."""
-    program = folder / "floor"
-    if not _compiled("c++", ["-O3", "-std=c++20", "-pthread", "-w", str(FOLDER / "floor.cpp")], program, []):
-        raise NotInstalledError("not installed: a C++20 compiler, c++")
+def core_objects() -> list[str]:
+    """The compiled core of the newest build, in the order in which it is linked; nothing where there is none."""
+    newest = max((ROOT / "build").glob("cp3*/core_objects.txt"), key=lambda path: path.stat().st_mtime, default=None)
+    return [] if newest is None else newest.read_text(encoding="utf-8").split()
+
+
+class Pair(NamedTuple):
+    """The core and floor.cpp in turns: CPU times of a run [s], the median of their ratios, instructions of a run."""
+
+    core_tenth: float
+    core: float
+    floor_tenth: float
+    floor: float
+    ratio: float
+    core_instructions: int  # 0: this machine does not count them
+    floor_instructions: int
+
+
+def pair(folder: Path) -> Path:
+    """Build pair.cpp; the program."""
+    objects, program = core_objects(), folder / "pair"
+    source = ["-O3", "-std=c++20", "-pthread", "-w", f"-I{ROOT / 'cpp/include'}", str(FOLDER / "pair.cpp")]
+    if not objects or not _compiled("c++", source, program, objects):
+        raise NotInstalledError("not installed: a C++20 compiler, c++, and a build of the core, make setup")
     return program
 
 
-def floor_told(program: Path) -> dict[str, tuple[float, float]]:
-    """CPU time of one run [s] and largest speed error [rad/s] of its two methods at rtol 1e-6."""
-    text = subprocess.run([str(program)], cwd=FOLDER, capture_output=True, text=True, check=True).stdout
-    found = re.findall(r"^(\w+)\s+rtol 1e-06 med ([\d.]+) us.*max err w (\S+)", text, re.MULTILINE)
-    return {method: (1e-6 * float(us), float(error)) for method, us, error in found}
+def paired(program: Path, system: Path, t_end: float, turns: int) -> dict[str, Pair]:
+    """What they take for the shift of a System at rtol 1e-6, by method."""
+    found = {}
+    for line in _said(program, str(system), f"{t_end:g}", str(turns)).splitlines():
+        method, *numbers, own, other = line.split()
+        *times, share = map(float, numbers)
+        found[method] = Pair(*(1e-6 * time for time in times), share, int(own), int(other))
+    return found

@@ -58,7 +58,8 @@ def changed_system(system: S, changes: Mapping[str, Any]) -> S:
 def _with(system: S, found: Quick) -> S:
     """The same structure with other numbers."""
     # of changes of changes none waits for another
-    own = {item.name: getattr(system, item.name) for item in fields(system)}
+    for name in LATER:
+        getattr(system, name)
     vars(system).pop(MAKES, None)
     data = bytearray(system.to_bytes())
     for name, array in found.arrays.items():
@@ -66,12 +67,19 @@ def _with(system: S, found: Quick) -> S:
             array.flags.writeable = False
             data[system.starts[name] : system.starts[name] + array.nbytes] = array.tobytes()
     made, arrays = object.__new__(type(system)), MappingProxyType(found.arrays)
-    vars(made).update({name: value for name, value in own.items() if name not in LATER})
+    own = vars(system)
+    vars(made).update({name: own[name] for name in _kept_names(type(system))})
     numbers = system.numbered._replace(arrays=arrays)
     vars(made).update({"arrays": arrays, "numbered": numbers, MAKES: partial(found.made, system)})
     # what follows from its structure alone
     vars(made).update({"counts": system.counts, "starts": system.starts, "_bytes": bytes(data)})
     return made
+
+
+@cache
+def _kept_names(cls: type) -> tuple[str, ...]:
+    """Names of what a changed System has of the one before it."""
+    return tuple(item.name for item in fields(cls) if item.name not in LATER)
 
 
 def anew(
@@ -139,7 +147,9 @@ class Quick(NamedTuple):
 def quick(system: SystemData, changes: Mapping[str, Any]) -> Quick | None:
     """The changes where they are such; None: everything must be looked at, and assembled, anew."""
     owners, where = owners_of(system), system.numbered
-    given, aims, inertias = dict[str, tuple[Component, Values]](), list[tuple[Target, Any]](), dict[str, float]()
+    given: dict[str, tuple[Component, Values]] = {}
+    aims: list[tuple[Target, Any]] = []
+    inertias: dict[str, float] = {}
     for name, value in changes.items():
         aim, kept = target(owners, name), _kept(value)
         if aim is not None and isinstance(aim.owner, Node) and aim.path == ("inertia",):
@@ -174,9 +184,9 @@ def owners_of(system: SystemData) -> Owners:
 
 def _right(given: Mapping[str, tuple[Component, Values]]) -> dict[str, tuple[Component, Component]] | None:
     """Elements without mistakes in the place of others; None where there are mistakes."""
-    made = dict[str, tuple[Component, Component]]()
+    made: dict[str, tuple[Component, Component]] = {}
     for name, (old, values) in given.items():
-        if _overlap([path for path, _ in values]):
+        if len(values) > 1 and _overlap([path for path, _ in values]):
             return None
         new = renewed(old, values)
         if not is_right(old, new):

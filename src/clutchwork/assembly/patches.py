@@ -214,15 +214,21 @@ def _start(where: Numbered, old: Component, new: Component) -> Iterator[Patch]:
         starts = [start / unit for start, unit in zip(states, scales, strict=True)] if kind is Role.PROCESS else states
         yield Patch("initial_state", first, list(starts))
     if kind is Role.CONTACT:
-        made: Any = new
-        yield Patch("contact_tolerance", number, [max(float(made.tolerance), float(made.friction.band))])
-        yield Patch("contact_initial", number, [int(made.locked)])
-    path, before = new.heat_path(), old.heat_path()
-    if (path is None) != (before is None):
+        before, made = _of_contact(old), _of_contact(new)
+        if made != before:
+            yield Patch("contact_tolerance", number, [max(float(made[0]), float(made[1]))])
+            yield Patch("contact_initial", number, [int(made[2])])
+    path, was = new.heat_path(), old.heat_path()
+    if (path is None) != (was is None):
         raise Unpatched
-    if path is not None:
+    if path is not None and was is not None and path.share != was.share:
         direction = number + (len(where.arrays["element_kind"]) if kind is Role.CONTACT else 0)
         yield Patch("heat_share", where.heats[direction], [path.share])
+
+
+def _of_contact(contact: Any) -> tuple[Any, Any, Any]:
+    """What a contact starts with."""
+    return contact.tolerance, contact.friction.band, contact.locked
 
 
 def patched(arrays: Mapping[str, NDArray[Any]], found: list[Patch]) -> dict[str, NDArray[Any]]:

@@ -10,6 +10,7 @@ from __future__ import annotations
 import re
 from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, fields, replace
+from functools import cache
 from typing import Any
 
 from clutchwork.base.errors import ModelError, Problem, near, nearest
@@ -109,9 +110,12 @@ def changeable(thing: Any) -> dict[str, str]:
     if isinstance(thing, ThermalNode):
         names = ("temperature",) if thing.capacity is None else ("capacity", "temperature")
         return {name: name for name in names}
-    if isinstance(thing, Component | Law | Signal):
-        return {item.name: item.name for item, spec in specs(type(thing)) if spec.what not in FIXED}
-    return {}
+    return _changeable(type(thing)) if isinstance(thing, Component | Law | Signal) else {}
+
+
+@cache
+def _changeable(cls: Any) -> dict[str, str]:
+    return {item.name: item.name for item, spec in specs(cls) if spec.what not in FIXED}
 
 
 def in_si(aim: Target, value: Any) -> Any:
@@ -344,7 +348,8 @@ def renewed(thing: Any, changes: Iterable[tuple[tuple[str, ...], Any]]) -> Any:
 
 def _values_at(thing: Any, changes: Iterable[tuple[tuple[str, ...], Any]]) -> dict[str, Any]:
     """The new values of its fields."""
-    values, inner = dict[str, Any](), dict[str, list[tuple[tuple[str, ...], Any]]]()
+    values: dict[str, Any] = {}
+    inner: dict[str, list[tuple[tuple[str, ...], Any]]] = {}
     for path, value in changes:
         if len(path) == 1:
             values[path[0]] = value
