@@ -7,6 +7,7 @@ from __future__ import annotations
 
 from math import pi
 
+import numpy as np
 import pytest
 
 import clutchwork as cw
@@ -97,3 +98,21 @@ def test_a_cam_that_is_held_right_behind_its_dead_point() -> None:
     assert event.energy_before == pytest.approx(0.5 * event.time**2, rel=1e-6)
     assert event.energy_after <= 1e-12 * event.energy_before
     assert abs(run.energy.residual) <= 1e-6 * event.energy_before
+
+
+def test_a_cam_at_its_dead_point_before_a_mass_that_is_held_jams() -> None:
+    """It is pushed from where nothing holds it to where nothing can turn it."""
+    d = cw.Driveline("held")
+    shaft, mass = d.shaft("shaft", inertia=1.0), d.mass("mass", mass=1.0)
+    d.add(cw.Torque("drive", shaft=shaft, torque=1.0))
+    lift, bend = 0.0157, 12.0 * 0.0157 / (2.0 * pi**2)
+    quarters = [(k * 0.5 * pi, x) for k, x in enumerate((0.0, 0.5 * lift, lift, 0.5 * lift, 0.0))]
+    d.add(cw.CamProfile("cam", shaft=shaft, mass=mass, lift=quarters, curvature=(bend, 0.0, -bend, 0.0, bend)))
+    d.add(cw.VariableGear("holds", input=d.housing, output=mass, ratio=1.0))
+    with pytest.warns(cw.StoppedEarly):
+        run = d.simulate(0.5, output="steps")
+    assert run.status == "jammed"
+    assert JAMS["ratio"][0] in run.message
+    # before its ratio counts: up to there the mass moves by less than what counts as zero
+    assert abs(run["shaft.angle"][-1]) < 1e-4
+    assert np.max(abs(run["mass.speed"])) < 1e-9

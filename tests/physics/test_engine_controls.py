@@ -187,3 +187,15 @@ def test_the_larger_of_throttle_and_idle_counts():
     run = d.simulate(2.0, times=times, **FINE)
     known = np.maximum(0.4 * times, 0.3)
     np.testing.assert_allclose(run["e.torque"], LOW + known * (TOP - LOW), atol=1e-9)
+
+
+def test_an_integral_above_its_limit_is_refused():
+    """It would rest beyond the end at which it is held, and leave that again and again."""
+    d = cw.Driveline()
+    shaft = d.shaft("s", inertia=INERTIA)
+    grid = {"speeds": [0.0, 100.0], "throttles": [0.0, 1.0], "torques": [[LOW, TOP], [LOW, TOP]], "deficit": [0.0, 0.0]}
+    control = {"governed": True, "idle_limit": 0.1, "initial_idle": 0.5}
+    ripple = {"orders": [2.0], "amplitudes": [0.5], "phases": [0.0]}
+    d.add(cw.EngineTorque("e", shaft=shaft, throttle=0.0, **grid, **control, **ripple))
+    with pytest.raises(cw.ModelError, match=r"initial_idle is 0\.5, above idle_limit 0\.1"):
+        d.simulate(0.1)

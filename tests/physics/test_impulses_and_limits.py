@@ -50,6 +50,20 @@ def test_locking_within_a_tolerance_is_an_impulse() -> None:
     assert run.energy.heat["b"] == pytest.approx(50.0, rel=1e-9)
 
 
+def test_what_holds_nothing_and_starts_at_rest_within_its_tolerance_goes_on() -> None:
+    """The other side is accelerated from zero on: at the start nothing tells which way it slips."""
+    d = cw.Driveline("weightless")
+    a, b = d.shaft("a", inertia=1.0), d.shaft("b", inertia=1.0)
+    law = cw.Coulomb(static=0.0, kinetic=0.0)
+    d.add(cw.TorqueLimiter("limiter", base=b, follower=a, torque=1.0, friction=law, tolerance=1.0))
+    d.add(cw.PrescribedPosition("motion", shaft=a, position=cw.Sine(amplitude=0.05, frequency=1.3)))
+    run = d.simulate(0.25, **TIGHT)
+    assert run.status == "done"
+    # no torque on it at any time
+    assert np.ptp(run["b.speed"]) <= 1e-15
+    assert run["b.speed"][0] == pytest.approx(0.05 * 2.0 * math.pi * 1.3, rel=1e-12)
+
+
 def test_a_contact_too_weak_to_lock_goes_on_the_way_it_moves() -> None:
     """-5 N m drive against a brake of 1 N m: 6 rad/s2 down to zero, then 4 rad/s2 the other way."""
     d = cw.Driveline("weak")

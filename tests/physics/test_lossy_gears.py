@@ -158,6 +158,65 @@ def test_a_leadscrew_lifts_from_its_efficiency_on():
     assert residual(run) < 1e-8
 
 
+def test_a_screw_slips_in_the_instant_in_which_its_load_passes_zero():
+    """Without a load it holds nothing: a hundredth of the ramp, in which nothing moves before, is enough to be seen."""
+    lead, radius, coefficient, torque, force, end = 0.005, 0.01, 0.15, 0.01, 2000.0, 1.0
+    angle = atan(lead / (2 * pi * radius))
+    d = cw.Driveline("vice")
+    screw, jaw = d.shaft("screw", inertia=1e-3), d.mass("jaw", mass=50.0)
+    d.add(cw.Leadscrew("nut", screw=screw, mass=jaw, lead=lead, radius=radius, friction_coefficient=coefficient))
+    d.add(cw.Torque("hand", shaft=screw, torque=torque))
+    d.add(cw.Torque("load", shaft=jaw, torque=cw.Ramp(offset=-force, height=2.0 * force, duration=end)))
+    run = d.simulate(end, **TIGHT)
+    # where the load is what the torque lifts
+    held = torque / (radius * tan(angle + atan(coefficient / cos(0.349))))
+    leaves, grips = run.events.of("nut")[:2]
+    assert (leaves.cause, grips.after) == ("torque limit", "locked")
+    assert leaves.time == pytest.approx(0.5 * end * (1.0 - held / force), rel=1e-9)
+    # the other way it holds any load, and what it moved in between is braked by that at once
+    assert leaves.time < grips.time < 0.5 * end * (1.0 + 2e-2)
+    assert run["screw.speed"][-1] == 0.0
+    assert residual(run) < 1e-8
+
+
+def test_a_sprag_that_overruns_at_the_start_leaves_a_lossy_set_at_rest():
+    """Nothing acts on the set and what is locked behind it; the shaft before the sprag is accelerated alone."""
+    d = cw.Driveline("overrun")
+    a, b, c, e = (d.shaft(name, inertia=inertia) for name, inertia in zip("abce", (0.5, 0.77, 0.08, 0.4), strict=True))
+    d.add(cw.Torque("drive", shaft=a, torque=-16.85))
+    d.add(cw.SpragClutch("sprag", base=a, follower=b, holding=11.6))
+    losses = {"efficiency": 0.7, "bearing_torque": 0.15}
+    d.add(cw.LossyPlanetary("set", sun=d.housing, ring=c, carrier=b, ratio=1.5, **losses))
+    law = cw.Coulomb(static=0.1, kinetic=0.1)
+    d.add(cw.Clutch("locked", base=c, follower=e, friction=law, gain=1.0, normal_force=1000.0, locked=True))
+    run = d.simulate(0.01, **TIGHT)
+    assert run.status == "done"
+    assert run["a.speed"][-1] == pytest.approx(-16.85 / 0.5 * 0.01, rel=1e-9)
+    assert max(abs(run[f"{name}.speed"]).max() for name in "bce") == 0.0
+
+
+def test_what_drives_a_screw_again_is_answered_by_its_efficiency():
+    """The jaw drives the screw, whose rotor slows down; then the rotor is faster at once, and its clutch slips. On the
+    line of a driving jaw the friction would be more than the clutch gives, and stop the screw that is pushed."""
+    lead, radius, coefficient, mass, inertia, capacity = 0.005, 0.03, 0.1, 10.0, 1e-6, 20.0
+    angle = atan(lead / (2 * pi * radius))
+    efficiency = tan(angle) / tan(angle + atan(coefficient / cos(0.349)))
+    d = cw.Driveline("struck")
+    rotor, screw = d.shaft("rotor", inertia=1.0), d.shaft("screw", inertia=inertia)
+    jaw = d.mass("jaw", mass=mass)
+    speed = cw.Table([(0.0, 100.0), (0.1, 99.0), (0.1, 150.0), (1.0, 150.0)])
+    d.add(cw.PrescribedSpeed("motor", shaft=rotor, speed=speed))
+    law = cw.Coulomb(static=1.0, kinetic=1.0)
+    d.add(cw.TorqueLimiter("clutch", base=rotor, follower=screw, torque=capacity, friction=law))
+    d.add(cw.Leadscrew("nut", screw=screw, mass=jaw, lead=lead, radius=radius, friction_coefficient=coefficient))
+    run = d.simulate(0.10005, **TIGHT)
+    moved = mass * (lead / (2 * pi)) ** 2
+    wanted = efficiency * capacity / (moved + efficiency * inertia)
+    assert run["clutch.slip"][-1] < 0.0
+    assert run["screw.acceleration"][-1] == pytest.approx(wanted, rel=1e-9)
+    assert residual(run) < 1e-8
+
+
 def test_a_planetary_set_loses_nothing_as_a_block_and_by_its_rolling_power_else():
     ratio, efficiency = 2.6, 0.95
     d = cw.Driveline("set")

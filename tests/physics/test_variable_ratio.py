@@ -241,6 +241,26 @@ def test_it_slips_before_a_ratio_at_which_it_holds_nothing(capacity):
     clean(run)
 
 
+def test_two_that_share_slip_before_a_ratio_at_which_both_hold_nothing():
+    """In parallel they depend on each other, and hold together what one of their capacities does."""
+    push, begin, duration, capacity = 30.0, 4.0, 0.1, 20000.0
+    d = cw.Driveline("carrier")
+    a = d.shaft("a", inertia=1.0)
+    d.add(cw.Torque("push", shaft=a, torque=push))
+    ramp = cw.Ramp(offset=begin, height=-2.0 * begin, duration=duration)
+    for name, share in (("one", 0.75), ("other", 0.25)):
+        sides = {"input": d.housing, "output": d.housing, "support": a}
+        d.add(cw.VariableRatio(name, **sides, ratio=ramp, capacity=share * capacity))
+    run = d.simulate(duration, output="steps")
+    rate = 2.0 * begin / duration
+    pole, way = (begin - 1.0) / rate, push / capacity / rate
+    leaves = run.events.changes()[:2]
+    assert {event.element for event in leaves} == {"one", "other"}
+    assert [event.time for event in leaves] == pytest.approx([pole - way] * 2, abs=1e-6 * way)
+    assert np.max(abs(run["one.torque"])) <= 0.75 * capacity * (1.0 + 1e-6)
+    clean(run)
+
+
 def test_it_slips_where_the_torque_has_a_zero_beside_the_pole():
     """A brake on the other shaft carries push x ratio/(ratio - 1): one sign at both ends of a step over 0 and 1."""
     push, capacity = 30.0, 200.0

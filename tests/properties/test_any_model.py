@@ -91,8 +91,6 @@ OPEN = {
     "shares of a contact that moves next to nothing beside a dead point": 5014797,
     "the limit of five loads that depend on each other, of which four are tried in all ways": 3002924,
     "a motor whose torque jumps as it leaves rest, in the row there": 3004861,
-    "a dip of a limit load within a step, where a redundant contact has a pole": 5007866,
-    "a set that passes the pole of a ratio within a step": 3005640,
 }
 
 
@@ -171,6 +169,17 @@ MENDED: dict[str, list[int]] = {
     "a row beyond a table": [5008523],
     "a tie that two cams lost and found again, elsewhere": [5003392],
     "a ratio that jumped from zero beside what others held": [6000289],
+    "a set that passed the pole of a ratio within a step": [3005640],
+    "a redundant contact that held nothing at a ratio within a step": [5007866, 12004583],
+    "a load that passed zero within a step": [8002589, 12001944],
+    "a limit that was found off the ties of a ratio": [9001844],
+    "shares that did not add up to their load": [8005776, 9007426, 12005256],
+    "a cam or a crank pushed from a dead point against what is held": [6200258, 6201270, 9004605],
+    "a screw that was pushed again after its nut had driven it": [9002971],
+    "round-off of what nothing acts on": [12005424],
+    "a break-away that a bristle held back": [12001455],
+    "what holds nothing and is at rest within its tolerance": [7001142],
+    "an element of a law that was met off its interpolant, again and again": [7001386, 12004663],
 }
 
 

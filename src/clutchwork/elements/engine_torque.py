@@ -106,6 +106,9 @@ class EngineTorque(Component):
             if len(values) != len(self.orders):
                 fault = f"has {len(values)} values for {len(self.orders)} orders"
                 found.append((name, fault, "give one for each order"))
+        if self.governed and self.initial_idle > self.idle_limit:
+            fault = f"is {self.initial_idle:g}, above idle_limit {self.idle_limit:g}"
+            found.append(("initial_idle", fault, "start at or below the limit"))
         return found
 
     def _used(self) -> tuple[bool, ...]:

@@ -77,13 +77,13 @@ def ending(made: Plain, base: Any) -> list[Fault]:
         return []
     if explodes(base):
         return []
-    # an explicit method that was asked for spends its budget where the motion is stiff: the others must not
-    if base.status == "too_many_steps" and made["simulation"].get("method") == "dopri5":
-        return ending(made, agree.run(made, method="auto"))
     kinds = [one["type"] for one in made["element"]]
     laws = [one["friction"]["type"] for one in made["element"] if isinstance(one.get("friction"), dict)]
     if "naive_sign" in laws and base.status in ("chatter", "too_many_steps", "too_many_events", "zeno"):
         return []
+    # an explicit method that was asked for spends its budget where the motion is stiff: the others must not
+    if base.status == "too_many_steps" and made["simulation"].get("method") == "dopri5":
+        return ending(made, agree.run(made, method="auto"))
     if base.status == "jammed" and not is_told(base):
         return [Fault("status", base.status, f"without its sentence: {base.message[:300]}")]
     if base.status in CAUSES and any(CAUSES[base.status] in kind for kind in kinds):
@@ -93,6 +93,9 @@ def ending(made: Plain, base: Any) -> list[Fault]:
     if base.status == "jammed" and grounded:
         return []
     if base.status == "jammed" and JAMS["light"][0] in base.message:
+        return []
+    # a freewheel behind a ratio that passes zero: whatever it held, what turns on the other side would turn it backward
+    if base.status == "jammed" and JAMS["turned"][0] in base.message and passes_zero(base):
         return []
     if base.status in ("jammed", "unbalanced", "too_many_steps") and at_dead_point(base):
         return []
@@ -134,6 +137,18 @@ def _left(ways: list[Any], node: int, front: float, back: float) -> float:
     first, second = (back * ways[0].direction.get(node, 0.0), front * ways[1].direction.get(node, 0.0))
     size = max(abs(back), abs(front)) * max(abs(way.direction.get(node, 0.0)) for way in ways)
     return (first - second) / size if size else 0.0
+
+
+def passes_zero(base: Any) -> bool:
+    """Whether a run ends where a ratio that is a signal passes zero."""
+    end = base.time[-1]
+    for branch in base.wiring.elements:
+        ratio = getattr(branch.component, "ratio", None)
+        if isinstance(ratio, cw.Signal):
+            near = [value for t in (end - SOON, end, end + SOON) for value in sides(ratio, t)]
+            if min(near) <= 0.0 <= max(near):
+                return True
+    return False
 
 
 def at_dead_point(base: Any) -> bool:

@@ -13,6 +13,7 @@ template <class T>
 struct CoupledProblem : CoupledMemory<T> {
   using CoupledMemory<T>::bound, CoupledMemory<T>::load;
   int n = 0, loads = 0;
+  bool either = false;  ///< whether torques count that answer the wrong way round
 
   const Bound<T>& against(int k, int direction) const { return bound[2 * load[k] + (direction > 0 ? 1 : 0)]; }
 };
@@ -69,6 +70,18 @@ bool solve_states(CoupledProblem<T>& p) {
   return sum == 0;
 }
 
+/// Whether the torques that were solved for answer what drives them the right way round: the determinant of their
+/// system is positive. docs/theory/load-dependent.md, rule 4
+template <class T>
+bool answers(const CoupledProblem<T>& p) {
+  bool positive = true, slips = false;
+  for (int i = 0; i < p.n; ++i) {
+    slips = slips || (p.state[i] != 0 && p.load[i] >= 0);
+    positive = positive == ((value(p.matrix[i * p.n + i]) > 0) == (p.pivot[i] == i));
+  }
+  return positive || !slips;
+}
+
 /// Round-off of a torque, of a slip acceleration and of a load of contact i.
 template <class T>
 struct Rounding {
@@ -81,6 +94,9 @@ Rounding<T> rounding(const CoupledProblem<T>& p, int i) {
   for (int j = 0; j < p.n; ++j) {
     made.slope = larger(made.slope, abs(value(p.mobility[i * p.n + j] * p.x[j])));
     made.torque = larger(made.torque, abs(value(p.x[j])));
+    // what is left where another one is let go, or held, that nothing else moves
+    const double own = value(p.mobility[j * p.n + j]);
+    if (own > 0) made.slope = larger(made.slope, 1e-3 * abs(value(p.mobility[i * p.n + j] * p.gradient[j])) / own);
   }
   for (int l = 0; l < p.loads; ++l) made.torque = larger(made.torque, abs(value(p.given[l])));
   return {1e-11 * made.torque, 1e-11 * made.slope};
@@ -185,7 +201,7 @@ bool iterate_states(CoupledProblem<T>& p, bool single) {
   std::uint64_t seen = 0;
   for (int round = 0, kept = 1; round < 40 * p.n + 60; ++round) {
     if (!solve_states(p)) return false;
-    if (change_states(p, single) == 0) return true;
+    if (change_states(p, single) == 0) return p.either || answers(p);
     const std::uint64_t mark = mark_of_states(p);
     if (mark == seen) return false;
     // a cycle comes back to what is kept for twice as long each time
@@ -201,8 +217,10 @@ bool enumerate_states(CoupledProblem<T>& p) {
   for (int i = 0; i < p.n; ++i) p.line[i] = 0;
   start_states(p);
   do {
+    // one that slips against a bound it does not have has left no numbers
+    for (int i = 0; i < p.n; ++i) p.x[i] = T(0);
     if (!solve_states(p)) continue;
-    bool fits = true;
+    bool fits = p.either || answers(p);
     for (int i = 0; i < p.n && fits; ++i) {
       int state, line;
       wanted(p, i, state, line);
@@ -218,14 +236,19 @@ bool search_states(CoupledProblem<T>& p) {
   return iterate_states(p, false) || iterate_states(p, true) || enumerate_states(p);
 }
 
-/// Torques, states and lines that fit together; where those that are let go cannot all move that way, as they can.
-/// False: there are none, or they were not found.
+/// Torques, states and lines that fit together; where those that are let go cannot all move that way, as they can;
+/// where none answers the right way round at rest, any. False: there are none, or they were not found.
 template <class T>
 bool solve(CoupledProblem<T>& p) {
   if (search_states(p)) return true;
-  bool any = false;
-  for (int i = 0; i < p.n; ++i) any = any || p.starts[i] != 0, p.starts[i] = 0;
-  return any && search_states(p);
+  bool any = false, moves = false;
+  for (int i = 0; i < p.n; ++i) {
+    moves = moves || (p.sliding[i] != 0 && p.starts[i] == 0 && p.load[i] >= 0);
+    any = any || p.starts[i] != 0, p.starts[i] = 0;
+  }
+  if (any && search_states(p)) return true;
+  p.either = !moves;
+  return p.either && search_states(p);
 }
 
 }  // namespace clutchwork

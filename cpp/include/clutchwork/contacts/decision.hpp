@@ -323,6 +323,19 @@ int steepest(const Workspace<T>& ws) {
   return found;
 }
 
+/// Whether the contact that was let go would come back at once where all torques are decided, of which decision.motion
+/// is the acceleration: what slips and follows loads does not answer the way it is let go.
+/// docs/theory/load-dependent.md, rule 4
+template <class T>
+bool runs_against(Workspace<T>& ws, int located) {
+  if (located < 0 || ws.event_context.cause != Cause::torque_limit || ws.loads.of[located] >= 0) return false;
+  if (ws.contact.forced[located] == 0 || ws.contact.mode[located] != ws.contact.forced[located]) return false;
+  const int d = int(ws.sys.elements) + located;
+  if (abs(value(rate_of(ws, d))) > slip_tolerance(ws) || steepest(ws) < 0) return false;
+  const double noise = 1e-9 * ws.decision.effort * value(sqrt(ws.geometry.own[d]));
+  return ws.contact.mode[located] * value(slip_acceleration(ws, located, ws.decision.motion)) < -noise;
+}
+
 /// Candidates between prescribed speeds that part slip before the others are asked. A freewheel that is turned backward
 /// ends it (-1: none).
 template <class T>
@@ -458,6 +471,7 @@ Verdict settle_contacts(Workspace<T>& ws, int located) {
     const int driven = coupled ? -1 : unheld(ws, p, tolerance);
     if (driven >= 0) return {Settled::jams, driven};
     const int back = turned_back(ws, p);
+    if (back < 0 && coupled && runs_against(ws, located)) return {Settled::unbalanced, steepest(ws)};
     if (back < 0) {
       if (coupled) settle_loads(ws, p, q, located, tolerance);
       return {Settled::yes};

@@ -44,9 +44,12 @@ int move(const P& p, int j, int way) {
   using T = std::remove_reference_t<decltype(*p.x)>;
   T step = way > 0 ? p.upper(j) - p.x[j] : p.x[j] - p.lower(j);
   int row = -1;
+  double most = 1;
+  for (int r = 0; r < p.rows(); ++r) most = larger(most, abs(value(p.tableau[r * p.width() + j])));
   for (int r = 0; r < p.rows(); ++r) {
     const T rate = p.tableau[r * p.width() + j] * T(-way);
-    if (abs(value(rate)) <= 1e-11) continue;
+    // round-off of earlier pivots
+    if (abs(value(rate)) <= 1e-11 * most) continue;
     const int b = p.basis[r];
     const T bound = value(rate) > 0 ? p.upper(b) : p.lower(b);
     if (abs(value(bound)) == infinity) continue;
@@ -102,10 +105,11 @@ struct LimitLoad {
   T *tableau, *x, *price;
   int *basis, *place;  ///< variable of each row; row of each variable, -1: not basic
 
-  T size = T(0);  ///< of the load [N m]: the factor is counted in it
+  T size = T(0);        ///< of the load [N m]: the factor is counted in it
+  double most = ample;  ///< factor that counts as any larger one
 
   T lower(int j) const { return j < set.n ? set.lower[j] : T(0); }
-  T upper(int j) const { return j < set.n ? set.upper[j] : T(ample) * size; }
+  T upper(int j) const { return j < set.n ? set.upper[j] : T(most) * size; }
   int width() const { return set.n + 1; }
   int rows() const { return set.rank; }
 
@@ -126,7 +130,7 @@ struct LimitLoad {
   T solve() {
     start();
     raise(*this, 50 + 20 * set.n);
-    return value(size) > 0 ? x[set.n] / size : T(ample);
+    return value(size) > 0 ? x[set.n] / size : T(most);
   }
 };
 

@@ -149,7 +149,8 @@ bool settle_impulses(Workspace<T>& ws, bool at_start) {
 /// Whether a contact has locked while it still slips within its own tolerance.
 template <class T>
 bool stops_short(const Workspace<T>& ws, int located) {
-  return located >= 0 && ws.contact.mode[located] == locked && ws.sys.contact_tolerance[located] > 0;
+  if (located < 0 || ws.contact.mode[located] != locked || !(ws.sys.contact_tolerance[located] > 0)) return false;
+  return abs(value(rate_of(ws, int(ws.sys.elements) + located))) > slip_tolerance(ws);
 }
 
 /// Whether a contact has locked with a slip that counts as zero, but moves an inertia whose energy does not: beside a

@@ -26,6 +26,7 @@ struct LoadedLimit {
   const int* line;  ///< of each of these: of its bound against slip backward, then forward
   int n_loads = 0;
   T noise = T(0), size = T(0);
+  double most = ample;  ///< as in LimitLoad
 
   int width() const { return set.n + 2 * n_loads + 1; }
   int rows() const { return set.rank + 2 * n_loads; }
@@ -67,7 +68,7 @@ struct LoadedLimit {
     for (int j = 0; j < w; ++j) x[j] = price[j] = T(0), place[j] = -1;
     for (int j = 0; j < set.n; ++j) low[j] = set.lower[j], high[j] = set.upper[j];
     for (int f = 0; f < n_loads; ++f) low[follower[f]] = T(-infinity), high[follower[f]] = T(infinity);
-    price[factor] = T(1), low[factor] = T(0), high[factor] = T(ample) * size;
+    price[factor] = T(1), low[factor] = T(0), high[factor] = T(most) * size;
     for (int r = 0; r < set.rank; ++r) {
       for (int j = 0; j < w; ++j) tableau[r * w + j] = j < set.n ? set.column[j * set.rank + r] : T(0);
       tableau[r * w + factor] = -set.load[r] / size;
@@ -79,12 +80,28 @@ struct LoadedLimit {
     }
   }
 
-  /// The largest factor. A member with a load slips the way whose bound has nothing left and a price.
+  /// Whether the torques still add up to the load: round-off of pivots spoils that.
+  bool adds_up() const {
+    const T factor = x[width() - 1] / size;
+    double most = value(size), apart = 0;
+    for (int r = 0; r < set.rank; ++r) {
+      double left = value(factor * set.load[r]);
+      for (int j = 0; j < set.n; ++j) {
+        const double part = value(set.column[j * set.rank + r] * x[j]);
+        left -= part, most = larger(most, abs(part));
+      }
+      apart = larger(apart, abs(left));
+    }
+    return apart <= 1e-8 * most;
+  }
+
+  /// The largest factor, none where it was not found. A member with a load slips the way whose bound has nothing left
+  /// and a price.
   T solve() {
     start();
-    if (!(value(size) > 0)) return T(ample);
+    if (!(value(size) > 0)) return T(most);
     raise(*this, 50 + 20 * width());
-    return x[width() - 1] / size;
+    return adds_up() ? x[width() - 1] / size : T(0);
   }
   /// As the price of a contact without load.
   T price_of(int i) const {

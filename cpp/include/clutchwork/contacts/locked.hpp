@@ -384,13 +384,18 @@ void outer_loads(Workspace<T>& ws, int k, const T* load, const T* carried) {
 }
 
 /// What set k has left of its limit load, as a share of the load: below zero it cannot hold. `load`: with the torques
-/// of the independent contacts.
+/// of the independent contacts; `most`: a factor that counts as any larger one.
 template <class T>
-[[gnu::noinline]] T set_room(Workspace<T>& ws, int k, const T* carried, T noise, const T* load) {
+[[gnu::noinline]] T set_room(Workspace<T>& ws, int k, const T* carried, T noise, const T* load, double most = ample) {
   const DependentSet<T> set = dependent_set(ws, k, carried, noise);
-  if (ws.sys.loads == 0 || !holds_loads(ws)) return limit_of(ws, set).solve() - T(1);
+  if (ws.sys.loads == 0 || !holds_loads(ws)) {
+    LimitLoad<T> limit = limit_of(ws, set);
+    limit.most = most;
+    return limit.solve() - T(1);
+  }
   outer_loads(ws, k, load, carried);
   LoadedLimit<T> limit = loaded_limit(ws, set, ws.held.set_member + ws.held.set_first[k], noise);
+  limit.most = most;
   return solve_loaded(limit) - T(1);
 }
 

@@ -520,15 +520,20 @@ int passes_at_once(const Ratios<T>& r) {
   return -1;
 }
 
-/// A transmission of which nothing is left that could keep it at its ratio where a run stands still; -1: none.
+/// A transmission of which nothing is left that could keep it at its ratio where a run stands still, at the point that
+/// was evaluated last; -1: none. What others leave of it is nothing too, unless its rates are at its ratio without it.
 template <class T>
-int vanished_row(const Ratios<T>& r) {
-  constexpr double least = 1e-10;
+int vanished_row(const Workspace<T>& ws) {
+  constexpr double least = 1e-10, apart = 1e-3;
+  const Ratios<T>& r = ws.ratios;
   for (int t = 0; t < r.ties && r.tie[t] >= 0; ++t) {
-    const int a = r.tie[t];
+    const int a = r.tie[t], k = r.place[2 * a];
     const T* first = r.between + 2 * a * r.rows + 2 * a;
     const double ratio = value(r.some.ratio[a]), size = value(first[0]) + value(first[r.rows + 1]);
     if (row_product(r, a, ratio, ratio) <= least * size) return a;
+    if (value(r.plain.gram[t * r.ties + t]) > least * tie_product(r, r.plain, r.plain, t)) continue;
+    const double one = value(ws.full.plain.rate[k]), other = value(r.plain.ratio[a] * ws.full.plain.rate[k + 1]);
+    if (abs(one - other) > apart * (abs(one) + abs(other))) return a;
   }
   return -1;
 }

@@ -69,8 +69,8 @@ double locate(F&& f, double low, double f_low, double high, double f_high, int h
 /// First zero of a function with kinks, which may dip sharply between two samples: a fine grid, and at each of its
 /// lowest places a search for the bottom; then its root. -1: none before `limit`.
 template <class F>
-[[gnu::noinline]] double first_dip(F&& sampled, double start, double end, double limit) {
-  constexpr int intervals = 16, rounds = 16;
+[[gnu::noinline]] double first_dip(F&& sampled, double start, double end, double limit, int rounds = 16) {
+  constexpr int intervals = 16;
   auto f = [&](double s) { return sample(sampled, s); };
   auto place = [&](int i) { return limit * i / intervals; };
   double y[intervals + 1];

@@ -94,10 +94,11 @@ class Phase : public StepSize<typename Form::Scalar> {
     ws_.in.time = -infinity;
     if constexpr (Form::full) {
       const auto& ratios = taken_form().ws.ratios;
-      int lost = ratios.n > 0 ? vanished_row(ratios) : -1;
-      if (ratios.n > 0 && lost < 0) {
+      int lost = -1;
+      if (ratios.n > 0) {
         evaluate(taken_form(), ws_.time, taken_step().y0(), taken_step().slope());
-        lost = passes_at_once(ratios);
+        lost = vanished_row(taken_form().ws);
+        if (lost < 0) lost = passes_at_once(ratios);
       }
       if (lost >= 0) return jam(lost);
       if (ws_.loads.n_sliding > 0 && stops_running_away()) return;
@@ -175,6 +176,9 @@ class Phase : public StepSize<typename Form::Scalar> {
   void end(Status status) { status_ = status; }
   /// Nothing needs a decision, but for torques that have jumped beyond what locked contacts hold.
   void go_on(bool jumped) {
+    if constexpr (!Form::small && !has_tangents<T>) {
+      if (jumped && balance_massless(form_, step_)) export_state(form_, step_.y0());
+    }
     linearize_behind_event();
     if (jumped && is_beyond(taken_form().ws)) return decide(Cause::other_event);
     if (ws_.guard.n_chattering > 0 && chatters(ws_)) return leave(Status::chatter);

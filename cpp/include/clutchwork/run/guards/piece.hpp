@@ -129,8 +129,12 @@ struct PieceEnd : OwnScale {
   template <class Phase>
   static void settle(Phase& phase, const Hit& hit) {
     if (!pass_law(phase.form(), phase.step(), hit.index, hit.who)) return phase.leave(Status::zeno);
+    // one that comes back at once has met an interpolant that is off the motion there: docs/theory/events.md, rule 13
+    constexpr int few = 4;
+    const bool back = phase.ws().events.crowd[component(phase.ws(), hit)] > few;
+    const auto most = back ? larger(8 * hit.s, 1e-3) * phase.taken_step().h : infinity;
     phase.go_on(true);
-    phase.limit_step([&] { return collision_step(phase.taken_form(), hit.index); });
+    phase.limit_step([&] { return smaller(most, collision_step(phase.taken_form(), hit.index)); });
   }
 };
 

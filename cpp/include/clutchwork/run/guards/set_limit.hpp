@@ -24,9 +24,27 @@ template <class Form>
     torques_at(form, step, s);
     return value(set_room(ws, k, ws.observed.carried, ws.step_start.noise[0], ws.loads.now));
   };
+  const double before = value(ws.step_start.room[k]);
+  hit.take(first_at_no_load(form, step, f, before, hit.s), k);
   if (!ends_elsewhere(ws, hit) && least >= ample - 1 && f(0.5) >= ample - 1) return;
-  const double s = first_dip(f, value(ws.step_start.room[k]), value(ws.step_end.room[k]), hit.s);
-  hit.take(s, k);
+  hit.take(first_dip(f, before, value(ws.step_end.room[k]), hit.s), k);
+}
+
+/// The same beside transmissions: at a ratio at which one of them leaves a contact of the set nothing to hold by, the
+/// limit load is zero in an instant. It is seen by what the set holds far from there, beyond what counts as ample.
+/// docs/theory/varying-ratios.md (22)
+template <class Form>
+[[gnu::noinline]] void find_limit_beside(Form& form, Step<Form>& step, int k, Hit& hit) {
+  constexpr double most = 1e6;
+  constexpr int rounds = 30;
+  auto& ws = form.ws;
+  fit(form, step);
+  auto f = [&](double s) {
+    torques_at(form, step, s);
+    return value(set_room(ws, k, ws.observed.carried, ws.step_start.noise[0], ws.loads.now, most));
+  };
+  const double limit = hit.none() ? 1.0 : hit.s;
+  hit.take(first_dip(f, f(0), f(limit), limit, rounds), k);
 }
 
 /// A dependent set of locked contacts at its limit load.
@@ -47,6 +65,7 @@ struct SetLimit : OwnScale {
       const double coming = room_ahead(ws, k, ws.step_start, step.h), gone = room_ahead(ws, k, ws.step_end, -step.h);
       const double change = larger(abs(after - before), larger(before - coming, after - gone));
       bool bends = false;
+      if (ws.ratios.n > 0) find_limit_beside(form, step, k, hit);
       if (ws.sys.loads > 0 && holds_loads(ws)) {
         find_loaded_limit(form, step, k, smaller(smaller(before, after), smaller(coming, gone)), hit);
         continue;

@@ -125,7 +125,7 @@ struct TorqueLimit {
       double before, after;
       const bool holds = holds_on(ws, a, step.h, before, after);
       const bool pole = ws.ratios.n > 0 && has_pole(ws, a);
-      if (holds && !ends_elsewhere(ws, hit) && !pole) continue;
+      if (holds && !ends_elsewhere(ws, hit) && !pole && !passes_no_load(ws, ws.held.contact[a])) continue;
       if (pole) {
         fit(form, step);
         auto margin_of = [&](double s) {
@@ -142,7 +142,11 @@ struct TorqueLimit {
     fit(form, step);
     int who = watched[0];
     auto f = [&](double s) { return least_margin(form, step, s, watched, n, who); };
-    const double s = first_crossing(f, m0, m1, hit.s);
+    double s = first_crossing(f, m0, m1, hit.s);
+    if constexpr (Form::full) {
+      const double sharp = first_at_no_load(form, step, f, m0, s < 0 ? hit.s : s);
+      if (sharp >= 0) s = sharp;
+    }
     if (!hit.is_after(s)) return;
     // where several are at their limits at once, the first that goes beyond
     double beyond = f(s);

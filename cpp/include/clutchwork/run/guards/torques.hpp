@@ -5,6 +5,7 @@
 #include <clutchwork/contacts/sticking.hpp>
 #include <clutchwork/motion/dynamics.hpp>
 #include <clutchwork/run/integrator/memory.hpp>
+#include <clutchwork/run/locate.hpp>
 #include <clutchwork/workspace.hpp>
 
 /// Torques of what is locked, inside a step.
@@ -41,9 +42,45 @@ void torques_at(Form& form, Step<Form>& step, double s) {
   inputs_at(ws, t);
   if (ws.sys.prescribed > 0) input_slopes_at(ws, t);
   observe(form, t, step.point(), step.slope());
+  if constexpr (Form::full) {
+    // as rows have it
+    if (ws.ratios.n > 0 && s > 0 && s < 1 && step.h > 0)
+      settle_ties(form, step.point()), observe(form, t, step.point(), step.slope());
+  }
   multipliers(ws, ws.observed.torque, true, ws.observed.carried);
   if (ws.sys.loads > 0) loads_seen(ws);
   ++ws.statistics.locations;
+}
+
+/// Whether the load of a contact passes zero in the step.
+template <class T>
+bool passes_no_load(const Workspace<T>& ws, int c) {
+  if constexpr (has_lanes<T>) return false;
+  const int l = ws.sys.loads > 0 ? ws.loads.of[c] : -1;
+  return l >= 0 && value(ws.step_start.load[l]) * value(ws.step_end.load[l]) < 0;
+}
+
+/// Where a guard f is hit before `limit` on the way to a zero of a load of a locked contact, which holds least there
+/// and may do so for an instant; -1: nowhere. `start`: f at the start.
+template <class Form, class F>
+[[gnu::noinline]] double first_at_no_load(Form& form, Step<Form>& step, F&& f, double start, double limit) {
+  auto& ws = form.ws;
+  double first = -1;
+  for (int l = 0; l < ws.sys.loads; ++l) {
+    const int c = ws.sys.load_contact[l];
+    if (ws.contact.mode[c] != locked || !passes_no_load(ws, c)) continue;
+    const double before = value(ws.step_start.load[l]), after = value(ws.step_end.load[l]);
+    const double sign = before > 0 ? 1 : -1;
+    auto load = [&](double s) {
+      torques_at(form, step, s);
+      return sign * value(ws.loads.now[l]);
+    };
+    const double none = locate(load, 0, abs(before), 1, -abs(after)), end = first < 0 ? limit : first;
+    if (none >= end) continue;
+    const double least = f(none);
+    if (least < 0) first = locate(f, 0, larger(start, 0.0), none, least);
+  }
+  return first;
 }
 
 /// Round-off of the other end of the step, for a contact that holds less than that: all torques may be zero at the
