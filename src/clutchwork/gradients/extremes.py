@@ -32,6 +32,8 @@ BENT = 1e-3
 JUMP = 1e-6
 # from so many steps in a row on they are looked at as one hill
 HILL = 3
+# by how much they may rise the wrong way, of what is allowed and of what they rise in all
+ROUGH = 0.05
 # so many of those that are equal are looked at
 MOST_EQUAL = 16
 SIGNS = {"maximum": (1.0,), "minimum": (-1.0,), "peak": (1.0, -1.0)}
@@ -129,7 +131,7 @@ def _without_hillsides(near: Places, coefficients: Array, samples: Array, allowe
         if len(chain) < HILL or rises.min() <= LEVEL * allowed or rises.min() > allowed:
             continue
         ends = np.column_stack([coefficients[chain, 0], coefficients[chain].sum(axis=1)]).ravel()
-        top, slack = int(np.argmax(ends)), LEVEL * allowed
+        top, slack = int(np.argmax(ends)), ROUGH * min(allowed, float(np.ptp(ends)))
         if np.all(np.diff(ends[: top + 1]) >= -slack) and np.all(np.diff(ends[top:]) <= slack):
             tops.append(chain[max(0, (top - 1) // 2) : (top + 1) // 2 + 1])
             near = np.union1d(np.setdiff1d(near, chain), tops[-1])

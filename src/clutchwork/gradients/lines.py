@@ -22,7 +22,7 @@ ALIKE = 1e-6
 # what is not known of a derivative may be so much of the value, for a number that changes by all of itself
 UNKNOWN = 1e-6
 # a number that passes zero has at least this size, of the largest one of its kind
-PASSES = 1e-2
+PASSES = 1e-3
 NOWHERE, NONE = np.zeros(0, dtype=np.intp), np.zeros(0)
 
 
