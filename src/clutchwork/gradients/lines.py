@@ -12,7 +12,7 @@ from clutchwork.gradients.measures import Context, Measure, measures
 from clutchwork.gradients.primal import Primal
 from clutchwork.gradients.runs import Run
 from clutchwork.gradients.traces import trace
-from clutchwork.sweeps.outputs import AtTimes, Output
+from clutchwork.sweeps.outputs import AtEnd, AtTimes, Output
 
 Array = NDArray[np.float64]
 Places = NDArray[np.intp]
@@ -49,9 +49,10 @@ def lines(run: Run, outputs: Mapping[str, Output], labels: Sequence[str], asked:
     """
     made, names = list[Line](), iter(labels)
     for one in outputs.values():
-        if isinstance(one, AtTimes) and run.is_forward:
+        if isinstance(one, (AtTimes, AtEnd)) and run.is_forward:
             columns = run.primal.forms[one.signal].weights(run.primal.rows[:1]).columns
-            for time, value, own in zip(one.times, *trace(run, one), strict=True):
+            times = one.times if isinstance(one, AtTimes) else (run.primal.t_end,)
+            for time, value, own in zip(times, *trace(run, one), strict=True):
                 size = _size(run.primal, columns, time)
                 made.append(Line(next(names), float(value), size, own, own, time, time, columns))
         else:
