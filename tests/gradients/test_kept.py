@@ -267,3 +267,17 @@ def test_a_hill_of_short_steps_has_one_top() -> None:
     assert (found[0].step, found[0].share) == (17, pytest.approx(0.3, abs=1e-3))
     # beside it the other side of its joint alone
     assert {one.step for one in found} <= {16, 17, 18}
+
+
+@pytest.mark.parametrize("by", ["cam.phase", "a.angle"])
+def test_a_cam_that_begins_at_the_start_of_its_table_has_a_derivative(by: str) -> None:
+    # seed 71017: its angle starts again with each revolution, which looked like a jump of the driveline
+    d = cw.Driveline("cam")
+    a, m = d.shaft("a", inertia=0.5, speed=3.0), d.mass("m", mass=16.0)
+    lift = [(0.0, 0.0), (np.pi / 2, 0.0066), (np.pi, 0.0133), (1.5 * np.pi, 0.0066), (2 * np.pi, 0.0)]
+    d.add(cw.Cam("cam", shaft=a, mass=m, lift=lift))
+    d.add(cw.Torque("push", shaft=m, torque=30.0))
+    d.add(cw.Damper("k", base=d.housing, follower=a, damping=0.2))
+    tally = judged(d, 0.7, ["a.speed", "m.position", "m.speed", cw.maximum("m.speed")], [by])
+    assert tally.compared == 4
+    assert tally.wrong + tally.refused + tally.apart == []

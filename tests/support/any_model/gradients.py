@@ -31,8 +31,8 @@ TOLD = 25
 ENDS = ("work", "heat", "angle", "position", "temperature", "energy", "elastic", "load", "wear", "twist")
 INTEGRALS = ("power", "speed", "acceleration")
 EXTREMES = ("torque", "force", "acceleration", "speed", "power", "slip", "deflection", "temperature", "capacity")
-# values that are smaller are zero but for round-off, in any unit
-ROUND_OFF = 1e-7
+# values of which a millionth is less than the absolute tolerance of the runs are zero but for that, in any unit
+ROUND_OFF = 1e-6
 ENTRY = re.compile(r"\[.*|^[^.]*\.")
 
 
