@@ -10,6 +10,7 @@ from numpy.polynomial.polynomial import polyval
 from numpy.typing import NDArray
 
 from clutchwork.gradients.functional import Functional
+from clutchwork.gradients.held_torques import torque_at_limit
 from clutchwork.gradients.instants import add_shift, add_turn
 from clutchwork.gradients.primal import SMOOTH, Primal
 from clutchwork.gradients.signals import add_signal, signal_at
@@ -228,6 +229,12 @@ def add_extreme(primal: Primal, one: Extreme, found: Located, into: Functional) 
     inside = end is None or not 0 < end < len(steps)
     if not inside and primal.between[0][end] == SMOOTH:
         whole = _of_bend(primal, one, int(end or 0), sign) or whole
+    held = torque_at_limit(primal, one.signal, found.step) if not inside and found.share == 1.0 else None
+    if held is not None:
+        rows, values = steps.rows[found.step], held.sign * primal.rows[steps.rows[found.step], held.column]
+        into.add(rows, held.column, held.sign * whole[0][1][:, None])
+        add_shift(primal, int(end or 0), sign * float(steps.right_slope[found.step] @ values), into)
+        return
     for step, weights in whole:
         add_signal(primal, one.signal, steps.rows[step], weights, into)
     if not inside:
