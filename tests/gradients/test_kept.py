@@ -267,3 +267,40 @@ def test_a_hill_of_short_steps_has_one_top() -> None:
     assert (found[0].step, found[0].share) == (17, pytest.approx(0.3, abs=1e-3))
     # beside it the other side of its joint alone
     assert {one.step for one in found} <= {16, 17, 18}
+
+
+@pytest.mark.parametrize("by", ["cam.phase", "a.angle"])
+def test_a_cam_that_begins_at_the_start_of_its_table_has_a_derivative(by: str) -> None:
+    # seed 71017: its angle starts again with each revolution, which looked like a jump of the driveline
+    d = cw.Driveline("cam")
+    a, m = d.shaft("a", inertia=0.5, speed=3.0), d.mass("m", mass=16.0)
+    lift = [(0.0, 0.0), (np.pi / 2, 0.0066), (np.pi, 0.0133), (1.5 * np.pi, 0.0066), (2 * np.pi, 0.0)]
+    d.add(cw.Cam("cam", shaft=a, mass=m, lift=lift))
+    d.add(cw.Torque("push", shaft=m, torque=30.0))
+    d.add(cw.Damper("k", base=d.housing, follower=a, damping=0.2))
+    tally = judged(d, 0.7, ["a.speed", "m.position", "m.speed", cw.maximum("m.speed")], [by])
+    assert tally.compared == 4
+    assert tally.wrong + tally.refused + tally.apart == []
+
+
+def test_the_peak_of_a_torque_that_breaks_away_follows_its_capacity() -> None:
+    # seed 71031: a stiff contact whose torque rises a hundred thousand times faster than its capacity falls
+    d = cw.Driveline("stiff")
+    a, b = d.shaft("a", inertia=0.007), d.shaft("b", inertia=0.02, speed=-60.0)
+    law, force = cw.Coulomb(static=0.3, kinetic=0.2), cw.Ramp(height=-1.0, duration=0.1, offset=4.0)
+    d.add(cw.Brake("c", shaft=a, friction=law, gain=1.0, normal_force=force, locked=True))
+    d.add(cw.ElasticBacklash("k", base=a, follower=b, stiffness=4000.0, gap=0.15))
+    tally = judged(d, 0.05, [cw.peak("c.torque"), cw.break_away("c")], ["k.gap", "k.stiffness", "b.speed"])
+    assert tally.wrong + tally.refused + tally.apart == []
+    assert tally.compared == 6
+
+
+def test_a_load_that_is_zero_at_a_knot_alone() -> None:
+    # seed 71031: it begins on one side of the knot or on the other, with another rate
+    d = cw.Driveline("knot")
+    a = d.shaft("a", inertia=0.02, speed=20.0)
+    press = cw.Table([(0.01, -20000.0), (0.02, 0.0), (0.04, 16000.0)])
+    d.add(cw.Brake("c", shaft=a, friction=cw.Coulomb(static=0.09, kinetic=0.09), gain=6e-4, pressure=press))
+    tally = judged(d, 0.05, ["a.speed", cw.squared_jerk("a")], ["c.pressure.values[2]", "c.pressure.values[3]"])
+    assert tally.wrong + tally.refused + tally.apart == []
+    assert tally.rightly == 1

@@ -193,7 +193,9 @@ def both_ways(tally: Tally, function: Any, given: Array, scales: Array, chosen: 
     values, swept = function(x), _swept(function)
     for place, (a, b, scale) in enumerate(zip(lines(forward, *args), lines(back, *args), scales, strict=True)):
         tally.ways += 1
-        missed = np.where(np.isnan(given[place]), 0.0, np.abs(a.left - b.left) * sizes / scale)
+        # what changes by far more than its own size is judged by its change
+        told = np.maximum(scale / sizes, np.abs(a.left))
+        missed = np.where(np.isnan(given[place]), 0.0, np.abs(a.left - b.left) / told)
         if np.nanmax(missed, initial=0.0) > BOTH_WAYS:
             tally.apart.append(f"{a.name}: forward {a.left}, back {b.left}, {np.nanmax(missed):.1e} of scale")
         for what, value in (("f(x)", values[place]), ("sweep", swept.get(place, values[place]))):

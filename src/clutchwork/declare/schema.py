@@ -26,13 +26,14 @@ class State:
     """A continuous state that a component owns: name, unit, meaning.
 
     Where it follows the rate of its component, as a deflection does, an error of it counts no more than that of the
-    rate would over `span` [s]. docs/theory/integrators.md
+    rate would over `span` [s]. docs/theory/integrators.md An angle that starts again has a `turn` after which it does.
     """
 
     name: str
     unit: str
     doc: str
     span: float = 0.0
+    turn: float = 0.0  # rad
 
 
 @dataclass(frozen=True)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from math import pi
+from math import pi, remainder
 from typing import ClassVar
 
 from clutchwork.declare import (
@@ -31,7 +31,7 @@ BEND = (0.12 / pi**2, 0.0, -0.12 / pi**2, 0.0, 0.12 / pi**2)
 
 @component(
     Role.TORQUE,
-    states=(State("angle", "rad", "angle in the table of the lift, which starts again with each revolution"),),
+    states=(State("angle", "rad", "angle in the table of the lift, which starts again after a revolution", turn=TURN),),
     hooks=("ratio", "margin", "cross", "turns", "settle"),
     ways=(
         Way("mass", "surface of the cam along the guide", domain="translation"),
@@ -82,9 +82,14 @@ class CamProfile(Component):
     def initial_states(self) -> tuple[float, ...]:
         """Angle in the table at the start [rad]."""
         first = float(self.lift[0][0])
-        return (first + (angle_of(self.shaft) - angle_of(self.support) + self.phase - first) % TURN,)
+        return (first + (self._start_angle() - first) % TURN,)
+
+    def _start_angle(self) -> float:
+        return angle_of(self.shaft) - angle_of(self.support) + self.phase
 
     def start_ratio(self) -> float:
         """Speed of the surface over that of the shaft at the start [m]."""
-        slope = slope_at(closed(self.lift), self.curvature, *self.initial_states())
+        first = float(self.lift[0][0])
+        angle = first + remainder(self._start_angle() - first, TURN)
+        slope = slope_at(closed(self.lift), self.curvature, angle)
         return beyond_rounding(slope, height(self.lift))

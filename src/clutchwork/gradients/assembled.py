@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 
 from clutchwork.base.classes import dataclass
 from clutchwork.base.errors import ModelError, ModelWarning
+from clutchwork.base.memoize import memoize
 from clutchwork.declare.layout import FIELDS
 from clutchwork.gradients.finite_differences import Bent, Rebuilt, slope
 from clutchwork.gradients.parameters import Tunable, changes
@@ -22,6 +23,7 @@ if TYPE_CHECKING:
     from clutchwork.assembly.system import System
 
 Array = NDArray[np.float64]
+Places = NDArray[np.intp]
 
 # points that are remembered
 MOST_KEPT = 8
@@ -40,6 +42,20 @@ def made(system: System, parameters: Sequence[Tunable], x: Array) -> System:
         # what is rarely wanted was said of the driveline
         warnings.simplefilter("ignore", ModelWarning)
         return system.changed(changes(system, parameters, x))
+
+
+@memoize
+def turning(system: System) -> tuple[Places, Array]:
+    """Words of start values that start again, as the angle of a cam does, and after how much."""
+    first, number = system.starts["initial_state"] // 8, 0
+    places, turns = list[int](), list[float]()
+    for element in system.elements:
+        begin, kind = first + int(system.arrays["element_state"][number]), type(element)
+        own = [(begin + place, state.turn) for place, state in enumerate(kind.states) if state.turn]
+        places += [place for place, _ in own]
+        turns += [turn for _, turn in own]
+        number += max(1, len(kind.ways))
+    return np.array(places, dtype=np.intp), np.array(turns)
 
 
 def finite(words: Array) -> Array:
@@ -103,8 +119,9 @@ class Assembled:
 
     def _differences(self, x: Array) -> tuple[Array, bool]:
         """Derivatives at a point, and whether they are those of all points."""
-        there = partial(self._beside, self._pinned(x))
-        here, columns, problems, straight = there(x), list[Array](), list[str](), True
+        pinned, columns, problems, straight = self._pinned(x), list[Array](), list[str](), True
+        here = self._beside(pinned, None, x)
+        there = partial(self._beside, pinned, here)
         for number in self.numbers:
             one = self.parameters[number]
             own = abs(float(x[number]))
@@ -134,11 +151,16 @@ class Assembled:
                 return False
         return True
 
-    def _beside(self, system: System, x: Array) -> Array:
+    def _beside(self, system: System, here: Array | None, x: Array) -> Array:
+        """The words at a point; what starts again after a turn goes on from where it is `here`."""
         words = words_of(made(system, self.parameters, x))
         if not self.structure.is_that_of(words):
             raise Rebuilt
-        return finite(words)
+        words = finite(words)
+        places, turns = turning(self.system)
+        if here is not None and len(places):
+            words[places] -= turns * np.round((words[places] - here[places]) / turns)
+        return words
 
     def _pinned(self, x: Array) -> System:
         """The System at a point, with its independent speeds asked for, so that values beside do not choose others."""

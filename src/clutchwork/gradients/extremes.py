@@ -10,6 +10,7 @@ from numpy.polynomial.polynomial import polyval
 from numpy.typing import NDArray
 
 from clutchwork.gradients.functional import Functional
+from clutchwork.gradients.held_torques import torque_at_limit
 from clutchwork.gradients.instants import add_shift, add_turn
 from clutchwork.gradients.primal import SMOOTH, Primal
 from clutchwork.gradients.signals import add_signal, signal_at
@@ -32,6 +33,8 @@ BENT = 1e-3
 JUMP = 1e-6
 # from so many steps in a row on they are looked at as one hill
 HILL = 3
+# by how much they may rise the wrong way, of what is allowed and of what they rise in all
+ROUGH = 0.05
 # so many of those that are equal are looked at
 MOST_EQUAL = 16
 SIGNS = {"maximum": (1.0,), "minimum": (-1.0,), "peak": (1.0, -1.0)}
@@ -129,7 +132,7 @@ def _without_hillsides(near: Places, coefficients: Array, samples: Array, allowe
         if len(chain) < HILL or rises.min() <= LEVEL * allowed or rises.min() > allowed:
             continue
         ends = np.column_stack([coefficients[chain, 0], coefficients[chain].sum(axis=1)]).ravel()
-        top, slack = int(np.argmax(ends)), LEVEL * allowed
+        top, slack = int(np.argmax(ends)), ROUGH * min(allowed, float(np.ptp(ends)))
         if np.all(np.diff(ends[: top + 1]) >= -slack) and np.all(np.diff(ends[top:]) <= slack):
             tops.append(chain[max(0, (top - 1) // 2) : (top + 1) // 2 + 1])
             near = np.union1d(np.setdiff1d(near, chain), tops[-1])
@@ -226,6 +229,12 @@ def add_extreme(primal: Primal, one: Extreme, found: Located, into: Functional) 
     inside = end is None or not 0 < end < len(steps)
     if not inside and primal.between[0][end] == SMOOTH:
         whole = _of_bend(primal, one, int(end or 0), sign) or whole
+    held = torque_at_limit(primal, one.signal, found.step) if not inside and found.share == 1.0 else None
+    if held is not None:
+        rows, values = steps.rows[found.step], held.sign * primal.rows[steps.rows[found.step], held.column]
+        into.add(rows, held.column, held.sign * whole[0][1][:, None])
+        add_shift(primal, int(end or 0), sign * float(steps.right_slope[found.step] @ values), into)
+        return
     for step, weights in whole:
         add_signal(primal, one.signal, steps.rows[step], weights, into)
     if not inside:

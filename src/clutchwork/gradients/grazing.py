@@ -59,6 +59,8 @@ def together(grazes: Array, decided: Array) -> bool:
 
     Parameters: decided, those of the grazes that did.
     """
+    if not grazes[:, DIFFERENCE].any():
+        return False
     bordering = grazes[np.isin(grazes[:, KIND], borders()) | (grazes[:, KIND] < 0)]
     return bool(np.any(bordering[:, DIFFERENCE] > 0.0) or np.any(decided[:, DIFFERENCE] > 0.0))
 
@@ -97,6 +99,8 @@ def moving_apart(
     Parameters: decided, those of the grazes that did; begin, of the run [s], where one is enough; sizes, the largest
     size of a number, by which derivatives of instants become times.
     """
+    if not grazes[:, DIFFERENCE].any():
+        return
     met = np.concatenate([decided, grazes[np.isin(grazes[:, KIND], borders())]])
     for graze in np.unique(met[met[:, DIFFERENCE] * sizes > APART], axis=0):
         time, name = float(graze[TIME]), component(system, int(graze[COMPONENT]), int(graze[KIND]))

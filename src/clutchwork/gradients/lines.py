@@ -12,7 +12,7 @@ from clutchwork.gradients.measures import Context, Measure, measures
 from clutchwork.gradients.primal import Primal
 from clutchwork.gradients.runs import Run
 from clutchwork.gradients.traces import trace
-from clutchwork.sweeps.outputs import AtTimes, Output
+from clutchwork.sweeps.outputs import AtEnd, AtTimes, Output
 
 Array = NDArray[np.float64]
 Places = NDArray[np.intp]
@@ -22,7 +22,7 @@ ALIKE = 1e-6
 # what is not known of a derivative may be so much of the value, for a number that changes by all of itself
 UNKNOWN = 1e-6
 # a number that passes zero has at least this size, of the largest one of its kind
-PASSES = 1e-2
+PASSES = 1e-3
 NOWHERE, NONE = np.zeros(0, dtype=np.intp), np.zeros(0)
 
 
@@ -49,9 +49,10 @@ def lines(run: Run, outputs: Mapping[str, Output], labels: Sequence[str], asked:
     """
     made, names = list[Line](), iter(labels)
     for one in outputs.values():
-        if isinstance(one, AtTimes) and run.is_forward:
+        if isinstance(one, (AtTimes, AtEnd)) and run.is_forward:
             columns = run.primal.forms[one.signal].weights(run.primal.rows[:1]).columns
-            for time, value, own in zip(one.times, *trace(run, one), strict=True):
+            times = one.times if isinstance(one, AtTimes) else (run.primal.t_end,)
+            for time, value, own in zip(times, *trace(run, one), strict=True):
                 size = _size(run.primal, columns, time)
                 made.append(Line(next(names), float(value), size, own, own, time, time, columns))
         else:

@@ -7,15 +7,15 @@ from numpy.typing import NDArray
 
 from clutchwork.gradients.runs import Run
 from clutchwork.gradients.signals import signal_at
-from clutchwork.sweeps.outputs import AtTimes
+from clutchwork.sweeps.outputs import AtEnd, AtTimes
 
 Array = NDArray[np.float64]
 
 
-def trace(run: Run, one: AtTimes) -> tuple[Array, Array]:
-    """Values and derivatives of a signal at its instants, of a forward run."""
+def trace(run: Run, one: AtTimes | AtEnd) -> tuple[Array, Array]:
+    """Values and derivatives of a signal at its instants, or at the end, of a forward run."""
     primal, tangents = run.primal, run.tangents
-    rows = np.searchsorted(primal.times, one.times)
+    rows = np.searchsorted(primal.times, one.times if isinstance(one, AtTimes) else [primal.t_end])
     known, matrix = primal.forms[one.signal].weights(primal.rows[rows]), np.zeros((len(rows), primal.numbers))
     for column, line in zip(known.columns.tolist(), known.values.T, strict=True):
         matrix += line[:, None] * tangents[rows, column]

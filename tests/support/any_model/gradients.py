@@ -25,12 +25,14 @@ from support.compared_gradients import Tally, compared, stated, summed, told
 
 # s of computing that one model may take with all of its runs
 PATIENCE = 120
+# after so many models each it is said how it stands
+TOLD = 25
 # what signals end with that values are made of: their last value, their integral, their extremes
 ENDS = ("work", "heat", "angle", "position", "temperature", "energy", "elastic", "load", "wear", "twist")
 INTEGRALS = ("power", "speed", "acceleration")
 EXTREMES = ("torque", "force", "acceleration", "speed", "power", "slip", "deflection", "temperature", "capacity")
-# values that are smaller are zero but for round-off, in any unit
-ROUND_OFF = 1e-7
+# values of which a millionth is less than the absolute tolerance of the runs are zero but for that, in any unit
+ROUND_OFF = 1e-6
 ENTRY = re.compile(r"\[.*|^[^.]*\.")
 
 
@@ -132,6 +134,8 @@ def main() -> None:
         tallies.append(tally)
         for what, words in told(tally):
             print(f"seed {seed} {what.upper()} {words}", flush=True)
+        if len(tallies) % TOLD == 0:
+            print("\n".join(["up to here:", *stated(summed(iter(tallies)))]), flush=True)
     print("\n".join(stated(summed(iter(tallies)))))
 
 

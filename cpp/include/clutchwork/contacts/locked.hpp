@@ -399,6 +399,22 @@ template <class T>
   return solve_loaded(limit) - T(1);
 }
 
+/// What a set has left that holds any multiple of its load or none, whatever its limit: the least of what the bounds of
+/// its members have left that are not reached, of the size of the load; below zero where it does not hold.
+template <class T>
+[[gnu::noinline]] T set_slack(Workspace<T>& ws, int k, const T* carried, const T* load) {
+  const DependentSet<T> set = dependent_set(ws, k, carried, T(0));
+  outer_loads(ws, k, load, carried);
+  LoadedLimit<T> limit = loaded_limit(ws, set, ws.held.set_member + ws.held.set_first[k], T(0));
+  const T factor = solve_loaded(limit);
+  if (!(value(factor) >= 1)) return T(-1);
+  T least = T(infinity);
+  for (int j = set.n; j < set.n + 2 * limit.n_loads; ++j) {
+    if (limit.place[j] >= 0 && value(limit.x[j]) < value(least)) least = limit.x[j];
+  }
+  return least / (factor * limit.size);
+}
+
 /// The largest factor of the load of a set that is at its limit. Members without friction of their own hold a multiple
 /// of any size there or none: then with bounds widened by round-off.
 template <class T>

@@ -226,6 +226,23 @@ bool has_jumped(const Workspace<T>& ws, double guard, double scale) {
   return guard < -least * scale && ws.time - ws.moved.here_time <= 1e-12 * (1 + abs(ws.time));
 }
 
+/// How a hit moves whose guard jumps there, by what is left shortly before it, at two instants, and its rate, which is
+/// that at the hit to second order.
+template <class G, class Form, class T = typename Form::Scalar>
+T sudden_shift(Form& form, Step<Form>& step, const Hit& hit, const T* velocity, double& rate) {
+  Workspace<T>& ws = form.ws;
+  const double reach = 1e-4 * larger(ws.moved.span, 1e-9);
+  T* probe = step.k(1);
+  auto left = [&](double back) {
+    for (int i = 0; i < form.n(); ++i) probe[i] = step.y0()[i] - velocity[i] * back;
+    ws.in.time = -infinity;
+    return G::left(form, step, hit, ws.time - back, probe);
+  };
+  const T near = left(reach), far = left(2 * reach);
+  rate = (value(far) - 4 * value(near)) / (2 * reach);
+  return rate != 0 ? without_value(T(2) * near - far) * T(-1 / rate) : T(0);
+}
+
 /// How a hit moves: minus the derivative of its guard at a fixed instant over its time derivative; one that has jumped
 /// moves with what made it jump. docs/theory/gradients.md (3)
 template <class G, class Form, class T = typename Form::Scalar>
@@ -240,6 +257,14 @@ T hit_shift(Form& form, Step<Form>& step, const Hit& hit, const T* velocity) {
     const T shift = ws.moved.here;
     note_graze(ws, hit.what, component, infinity, shift);
     return shift;
+  }
+  if constexpr (requires { G::is_sudden(ws, 0.0); }) {
+    if (G::is_sudden(ws, value(guard))) {
+      double rate = 0;
+      const T shift = sudden_shift<G>(form, step, hit, velocity, rate);
+      note_graze(ws, hit.what, component, abs(rate), shift);
+      return shift;
+    }
   }
   const double rate = guard_rate<G>(form, step, hit, velocity);
   const T shift = rate != 0 ? without_value(guard) * T(-1 / rate) : T(0);

@@ -84,11 +84,17 @@ def _tridiagonal(lower: list[float], middle: list[float], upper: list[float], wa
 
 
 def slope_at(points: Pairs, curvature: Sequence[float], angle: float) -> float:
-    """Derivative of a lift at an angle of its table [m/rad]."""
-    k = max(i for i, (x, _) in enumerate(points[:-1]) if i == 0 or x <= angle)
-    start, width = slope_of(points, curvature, k, 0), points[k + 1][0] - points[k][0]
-    u = angle - points[k][0]
-    return start + u * (curvature[k] + u * (curvature[k + 1] - curvature[k]) / (2.0 * width))
+    """Derivative of a lift at an angle of its table, or of the revolution before it [m/rad].
+
+    From the nearer end of its piece: an angle a little before zero is known better than one a little before 2 pi.
+    """
+    back = TURN if angle < points[0][0] else 0.0
+    k = max(i for i, (x, _) in enumerate(points[:-1]) if i == 0 or x - back <= angle)
+    near, far = angle - (points[k][0] - back), angle - (points[k + 1][0] - back)
+    bend = (curvature[k + 1] - curvature[k]) / (2.0 * (points[k + 1][0] - points[k][0]))
+    if near <= -far:
+        return slope_of(points, curvature, k, 0) + near * (curvature[k] + near * bend)
+    return slope_of(points, curvature, k, 1) + far * (curvature[k + 1] + far * bend)
 
 
 def slope_of(points: Pairs, curvature: Sequence[float], k: int, end: int) -> float:

@@ -87,6 +87,17 @@ struct SetLimit : OwnScale {
     see_torques(form, step, t, y);
     return set_room(form.ws, hit.index, form.ws.observed.carried, T(0), form.ws.loads.now);
   }
+  /// What is left before a limit at which a set gives way that holds any multiple of its load or none.
+  template <class Form, class T = typename Form::Scalar>
+  static T left(Form& form, Step<Form>& step, const Hit& hit, double t, const T* y) {
+    see_torques(form, step, t, y);
+    return set_slack(form.ws, hit.index, form.ws.observed.carried, form.ws.loads.now);
+  }
+  /// Whether it is such a one, by its guard at the limit.
+  template <class T>
+  static bool is_sudden(const Workspace<T>& ws, double guard) {
+    return abs(guard) > 0.5 && ws.sys.loads > 0 && holds_loads(ws);
+  }
   template <class T>
   static int component(const Workspace<T>& ws, const Hit& hit) {
     return int(ws.sys.elements) + ws.held.set_member[ws.held.set_first[hit.index]];
