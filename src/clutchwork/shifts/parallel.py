@@ -271,7 +271,7 @@ class ParallelSequence:
                 self.jolt, self.instants["jolt"] = jolt, self._now
 
     def _lets_go(self, name: str, torque: float) -> bool:
-        """Whether an element that opens is no more wanted, so that a kiss point taken too high does not make it drag."""
+        """Whether an element that opens is no more wanted: one whose kiss point is taken too high would drag."""
         idle = name in self.one.off and torque == 0.0
         return idle and name in self.do.drivers and self._passed > LET_GO * self._time
 
