@@ -20,6 +20,7 @@ STORIES = (
     "shift-controller",
     "learn",
     "robotics",
+    "hydraulics",
 )
 
 
@@ -100,7 +101,17 @@ GROUPS = {
     ),
     "stories": Group(
         "stories",
-        (PLOT, SCHEMATIC, *_examples("six_speed", "shift_controller", "tune_launch")),
+        (
+            PLOT,
+            SCHEMATIC,
+            *_examples(
+                "six_speed",
+                "shift_controller",
+                "tune_launch",
+                "eight_speed",
+                "valve_body",
+            ),
+        ),
         STORIES,
     ),
     "studies": Group(

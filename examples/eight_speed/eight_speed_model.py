@@ -35,14 +35,18 @@ def car(
     speed: float = 0.0,
     throttle: float = 0.0,
     shift: Mapping[str, Mapping[str, Any]] | None = None,
+    crank: cw.Node | None = None,
 ) -> cw.Driveline:
-    """The car in a gear at a speed [m/s], its lock-up clutch open; shift, fields of shift elements by name."""
+    """The car in a gear at a speed [m/s], its lock-up clutch open; shift, fields of shift elements by name.
+
+    Parameters: crank, that of the engine where something else needs it too, `crankshaft` by default.
+    """
     d = cw.Driveline(f"car with {box.title or box.name}")
     turning = speed / RADIUS * FINAL_DRIVE
     # in neutral the turbine goes with the engine
     ratio = box.ratios.get(gear)
     turbine = turning * ratio if ratio else IDLE
-    engine = d.shaft("engine", inertia=0.18, speed=max(IDLE, turbine))
+    engine = d.add_node(crank or crankshaft(box, gear, speed))
     shaft = d.shaft("turbine", inertia=0.06, speed=turbine)
     output = d.shaft("output", inertia=0.02, speed=None if ratio else turning)
     _engine(d, engine, shaft, throttle)
@@ -50,6 +54,12 @@ def car(
     d.add(cw.Transmission("gearbox", **ends, inertia=0.008, torque=RATED, shift=shift))
     _axle(d, output, speed)
     return d
+
+
+def crankshaft(box: cw.Gearbox, gear: str, speed: float) -> cw.Node:
+    """The shaft of the engine with the car in a gear at a speed [m/s]."""
+    turbine = speed / RADIUS * FINAL_DRIVE * box.ratios.get(gear, 0.0)
+    return cw.Node("engine", inertia=0.18, speed=max(IDLE, turbine))
 
 
 def _engine(d: cw.Driveline, engine: cw.Node, turbine: cw.Node, throttle: float) -> None:

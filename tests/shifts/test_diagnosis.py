@@ -77,7 +77,7 @@ def test_a_controller_says_what_it_saw_of_a_filling(wrong: float, words: str, cu
     assert record.end is not None
     assert record.begin < found.time < record.end
     # its controller learns the same
-    learnt = control.learnt["D"] / known["D"]
+    learnt = control.learnt["D"].fill_time / known["D"]
     assert learnt > 1.0 if cure == "up" else learnt < 1.0
 
 

@@ -18,13 +18,21 @@ ENGINE: dict[str, Any] = {
 }  # fmt: skip
 
 
-def car(box: cw.Gearbox, gear: str, turbine: float = SPEED, throttle: float = 0.0, **transmission: Any) -> cw.Driveline:
-    """The car in a gear, its input at a speed [rad/s]; in neutral it stands."""
+def car(
+    box: cw.Gearbox,
+    gear: str,
+    turbine: float = SPEED,
+    throttle: float = 0.0,
+    *,
+    crank: cw.Node | None = None,
+    **transmission: Any,
+) -> cw.Driveline:
+    """The car in a gear, its input at a speed [rad/s]; in neutral it stands. Parameters: crank, that of the engine."""
     d = cw.Driveline(f"{box.name} in {gear}")
     ratio = box.ratios.get(gear)
     turbine = turbine if ratio else 0.0
     turning = turbine / ratio if ratio else 0.0
-    engine = d.shaft("engine", inertia=0.2, speed=max(IDLE, turbine))
+    engine = d.add_node(crank or crankshaft(turbine))
     shaft = d.shaft("turbine", inertia=0.06, speed=turbine)
     output = d.shaft("output", inertia=0.02, speed=None if ratio else 0.0)
     d.add(cw.Engine("combustion", shaft=engine, throttle=throttle, **ENGINE))
@@ -42,6 +50,11 @@ def car(box: cw.Gearbox, gear: str, turbine: float = SPEED, throttle: float = 0.
     d.add(cw.Transmission("gearbox", gearbox=box, input=shaft, output=output, gear=gear if ratio else None, **values))
     _axle(d, output, turning)
     return d
+
+
+def crankshaft(turbine: float) -> cw.Node:
+    """Shaft of the engine where the turbine turns at a speed [rad/s]."""
+    return cw.Node("engine", inertia=0.2, speed=max(IDLE, turbine))
 
 
 def rigid(box: cw.Gearbox, gear: str, engine: float = IDLE, **transmission: Any) -> cw.Driveline:
@@ -82,6 +95,26 @@ def hydraulic(box: cw.Gearbox, gear: str, turbine: float = SPEED, *, pistons: bo
     d = car(box, gear, turbine, shift=shift)
     for part in parts:
         d.add(part)
+    return d
+
+
+def with_valve_body(box: cw.Gearbox, gear: str, turbine: float = SPEED, **body: Any) -> cw.Driveline:
+    """The car whose elements are pressed by a valve body: pump on the engine, line pressure, spool valves, pistons."""
+    most = {name: max(one.torque, 0.1) * 900.0 for name, one in box.capacities().items()}
+    names = [element.name for element in box.elements]
+    closed = box.closed_in(gear)
+    engine = crankshaft(turbine if box.ratios.get(gear) else 0.0)
+    made = cw.ValveBody(
+        "body",
+        shaft=engine,
+        piston_areas=dict.fromkeys(names, 6e-3),
+        pressures=dict.fromkeys(closed, 1e6) or None,
+        **body,
+    )
+    # a piston has 5.5 kN at 1 MPa
+    shift = {name: {"normal_force": made.part(f"{name}_piston"), "gain": most[name] / 0.13 / 5500.0} for name in names}
+    d = car(box, gear, turbine, crank=engine, shift=shift)
+    d.add(made)
     return d
 
 

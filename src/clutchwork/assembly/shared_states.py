@@ -64,12 +64,12 @@ class Shared:
         """Inputs of processes behind which one stands that gathers."""
         gathering = {process.name for process in self.processes if type(process).gathers}
         found = list[tuple[int, int, int]]()
-        for number, process in enumerate(self.processes):
-            for place, (names, spec) in enumerate(inputs(type(process))):
+        for place, process in enumerate(self.processes):
+            for port, (names, spec) in enumerate(inputs(type(process))):
                 value = getattr(process, names[0])
                 owner = state_name(value).rpartition(".")[0] if spec.draws and is_state(value) else ""
                 if owner in gathering:
-                    found.append((number, place, wires.places.processes[owner]))
+                    found.append((place, port, wires.places.processes[owner]))
         columns = zip(*found, strict=True) if found else ([], [], [])
         return dict(zip(("draw_process", "draw_input", "draw_from"), map(list, columns), strict=True))
 

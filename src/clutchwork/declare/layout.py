@@ -32,7 +32,10 @@ COUNTS = (
     ("segments", "segments of all signals"),
     ("params", "numbers in the parameter pool"),
     ("points", "points in the curve pool"),
-    ("input_refs", "references from components to signals, shared states, rates, heats, supplied powers and sums of flows"),
+    (
+        "input_refs",
+        "references from components to signals, shared states, rates, heats, supplied powers and sums of flows",
+    ),
     ("basis_entries", "shares of speeds in node speeds that are not zero"),
     ("mass_entries", "entries of the mass matrix that are not zero"),
     ("element_rate_entries", "shares of speeds in the rates of elements that are not zero"),
@@ -124,8 +127,8 @@ FIELDS = (
         "input_refs",
         "i4",
         ("input_refs",),
-        "a signal; from `inputs` on a shared state; then the rate of a direction; then the heat of a direction [W]; then what it draws from its supply [W]; "
-        "then the sum of the flows into a process",
+        "a signal; from `inputs` on a shared state; then the rate of a direction; then the heat of a direction [W];"
+        " then what it draws from its supply [W]; then the sum of the flows into a process",
     ),
     ("input_first", "i4", ("inputs",), "first segment of each signal"),
     ("input_count", "i4", ("inputs",), "number of segments; 0: set from outside, held constant"),

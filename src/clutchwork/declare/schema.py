@@ -72,7 +72,7 @@ class Spec:
     instead_of: str = ""  # of an alternative: the signal that it stands for
     gain: tuple[str, ...] = ()  # of a signal: units that the parameter `gain` has when it is given
     otherwise: float | None = None  # of a signal: its value when neither it nor its alternative is given
-    draws: bool = False  # of a signal: a process that gathers gives the flow that its reader takes, by the hook `drawn`
+    draws: bool = False  # of a signal: its reader takes a flow from a process that gathers, by the hook `drawn`
     presses: bool = False  # of a signal: below zero it counts as zero, so that a constant below zero never acts
     flag: bool = False  # true or false in Python, 1 or 0 in the core
     fixed: bool = False  # says how many states there are: it stays while a run goes on

@@ -19,11 +19,11 @@ AMBIENT = 101325.0  # Pa
     hooks=("margin", "cross"),
 )
 class Accumulator(Component):
-    """Oil that a gas or a spring keeps under pressure; whatever has it as a port fills and empties it, as an `OilVolume`.
+    """Oil that a gas or a spring keeps under pressure; what has it as a port fills and empties it, as an `OilVolume`.
 
-    Below `precharge` it is empty. Above it a gas is compressed from `capacity` on by `pressure volume^exponent`, absolute
-    pressures; a spring gives way by a volume in proportion to the pressure, until it is full. The oil of `volume` is
-    there always, so that the pressure has a rate where it is empty or full.
+    Below `precharge` it is empty. Above it a gas is compressed from `capacity` on, with `pressure volume^exponent`
+    constant at absolute pressures; a spring gives way by a volume in proportion to the pressure, until it is full. The
+    oil of `volume` is there always, so that the pressure has a rate where it is empty or full.
 
     Source: H. E. Merritt, Hydraulic Control Systems, Wiley 1967; H. Murrenhoff, Grundlagen der Fluidtechnik 1, 2016.
     """

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import Any
 
-from clutchwork.declare import Role, Signal, SignalLike, State, component, option, param, signal
+from clutchwork.declare import Component, Role, Signal, SignalLike, State, component, option, param, signal
 from clutchwork.elements.bases.oil import CLEARANCE, Opening
 from clutchwork.elements.bases.ratios import at_start
 from clutchwork.elements.oil_volume import BAR
@@ -50,5 +50,4 @@ class ReliefValve(Opening):
 
 def command_at_start(command: Any) -> float:
     """A command [Pa] at the start: of a signal, a number or a process; 0 of anything else."""
-    known = isinstance(command, int | float | Signal) or isinstance(command, tuple) or hasattr(command, "initial_states")
-    return at_start(command) if known else 0.0
+    return at_start(command) if isinstance(command, int | float | Signal | tuple | Component) else 0.0

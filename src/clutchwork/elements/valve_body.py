@@ -30,16 +30,20 @@ class ValveBody(Component):
 
     Use it for the pressures of a `Transmission`: a body named "body" has for the element A the valve `body.A_valve`,
     the oil behind it, `body.A_port`, and `body.A_piston`, whose force is the `normal_force` of the element:
-    `shift={"A": {"normal_force": body.part("A_piston"), "gain": ...}}`. Its pump takes its torque from `shaft`; the line
-    is `body.line`, which `body.regulator` keeps at `line_pressure` as long as the pump delivers what pistons and leaks
+    `shift={"A": {"normal_force": body.part("A_piston"), "gain": ...}}`. Its pump takes its torque from `shaft`; the
+    line is `body.line`, which `body.regulator` keeps at `line_pressure` as long as the pump delivers what pistons and leaks
     take. Shift controllers command `body.A_valve.command`, and find valve and piston by themselves.
 
     What elements have in common is given once; a `Pump`, `SpoolValve` and `ClutchActuator` of one's own make any other.
     """
 
     shaft: Node = port("shaft that drives the pump")
-    piston_areas: Mapping[str, float] | None = named("m2", "area of the piston by element", above=0.0, example={"A": 6e-3})
-    pressures: Mapping[str, float] | None = named("Pa", "pressure at the start by element, of those not empty", above=0.0)
+    piston_areas: Mapping[str, float] | None = named(
+        "m2", "area of the piston by element", above=0.0, example={"A": 6e-3}
+    )
+    pressures: Mapping[str, float] | None = named(
+        "Pa", "pressure at the start by element, of those not empty", above=0.0
+    )
     line_pressure: SignalLike = signal("Pa", "wanted pressure of the line", default=1.2e6, at_least=0.0)
     displacement: float = param("m3", "oil of the pump per turn", default=2e-5, above=0.0)
     efficiency: float = param("1", "hydraulic torque over torque of the pump", default=0.9, above=0.0, at_most=1.0)
@@ -48,15 +52,20 @@ class ValveBody(Component):
     line_volume: float = param("m3", "oil in the line", default=2e-4, above=0.0)
     port_volume: float = param("m3", "oil between a valve and its piston", default=1e-5, above=0.0)
     regulator_area: float = param("m2", "area of the open regulator", default=6e-5, above=0.0)
-    valve_area: float = param("m2", "area of an open spool valve", default=1.2e-5, above=0.0)
-    valve_span: float = param("Pa", "pilot pressure that moves a spool to its end", default=5e4, above=0.0)
-    overlap: float = param("1", "share of the way of a spool that opens nothing", default=0.05, at_least=0.0, at_most=0.9)
+    valve_area: float = param("m2", "area of an open spool valve", default=4e-5, above=0.0)
+    valve_span: float = param("Pa", "pilot pressure that moves a spool to its end", default=2e4, above=0.0)
+    transition: float = param(
+        "1", "number of Reynolds at which the flow in its passages becomes turbulent", default=260.0, above=0.0
+    )
+    overlap: float = param(
+        "1", "share of the way of a spool that opens nothing", default=0.02, at_least=0.0, at_most=0.9
+    )
     lag: float = param("s", "time constant of the pilot pressures", default=0.015, above=0.0)
-    orifice_area: float = param("m2", "area of the bore before a piston", default=8e-6, above=0.0)
+    orifice_area: float = param("m2", "area of the bore before a piston", default=3e-6, above=0.0)
     preload: float = param("N", "force of a return spring at its stop", default=300.0, at_least=0.0)
     spring_rate: float = param("N/m", "stiffness of a return spring", default=1e5, above=0.0)
     kiss_stroke: float = param("m", "stroke at which plates touch", default=2e-3, above=0.0)
-    contact_rate: float = param("N/m", "stiffness of plates", default=1e7, above=0.0)
+    contact_rate: float = param("N/m", "stiffness of plates", default=2e7, above=0.0)
     density: SignalLike = signal("kg/m3", 'density of the oil, as `(oil, "density")`', default=DENSITY, above=0.0)
     viscosity: SignalLike = signal(
         "m2/s", 'kinematic viscosity of the oil, as `(oil, "viscosity")`', default=VISCOSITY, above=0.0
@@ -97,6 +106,7 @@ class ValveBody(Component):
             exhaust_area=self.valve_area,
             span=self.valve_span,
             overlap=self.overlap,
+            transition=self.transition,
             lag=self.lag,
             **oil,
         )

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from clutchwork.shifts.actuators import ElementActuator
+from clutchwork.shifts.actuators import ElementActuator, Learnt
 from clutchwork.shifts.comfort import jerk, vibration_dose
 from clutchwork.shifts.controller import ShiftController
 from clutchwork.shifts.detect import Shift, shifts_of
@@ -38,6 +38,7 @@ __all__ = [
     "HybridSettings",
     "InGear",
     "Inhibit",
+    "Learnt",
     "Measured",
     "Plant",
     "Sensed",

@@ -48,7 +48,9 @@ class Actuation:
             name: f"{self.prefix}.{name}.{ends[kind]}" for name, kind in self.kinds.items() if kind in ends
         }
         self._signals |= {name: one.signal for name, one in self.plant.actuators.items()}
-        self.drivers = {name: ActuatorDriver(one, one.fill_time, one.kiss) for name, one in self.plant.actuators.items()}
+        self.drivers = {
+            name: ActuatorDriver(one, one.fill_time, one.kiss) for name, one in self.plant.actuators.items()
+        }
         self.sent: dict[str, float] = {}
         self.period = PERIOD
 

@@ -1,4 +1,4 @@
-"""What a shift shows of the filling of its elements, learnt for the next one. docs/theory/shifts.md (18)."""
+"""What a shift shows of the pistons of its elements, learnt for the next one. docs/theory/shifts.md (18), (22)."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ if TYPE_CHECKING:
 # change of the fill time per jolt [s/rad], per share of it that an element was late, and at most
 PER_JOLT, PER_LATE, MOST = 0.04, 0.3, 0.08
 # share of what a shift shows of the kiss point that is learnt, and at most of the range of commands
-PER_KISS, MOST_KISS = 0.4, 0.02
+PER_KISS, MOST_KISS = 0.6, 0.03
 # looks at an inertia phase that make a mean
 LOOKS = 5
 

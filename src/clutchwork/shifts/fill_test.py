@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -14,6 +14,7 @@ from clutchwork.declare import Component
 from clutchwork.declare.schema import specs
 from clutchwork.elements.pressure_actuator import PressureActuator
 from clutchwork.elements.pressure_valve import PressureValve
+from clutchwork.elements.spool_valve import SpoolValve
 from clutchwork.shifts.actuators import ElementActuator
 from clutchwork.shifts.driver import TOUCH
 from clutchwork.stepping.simulator import Simulator
@@ -62,11 +63,23 @@ def _command(system: System, element: str) -> tuple[str, Component] | None:
     if part is None:
         return None
     while True:
-        inputs = [(item.name, getattr(part, item.name)) for item, _ in specs(type(part), "signal")]
-        inner = next((value for _, value in inputs if isinstance(value, Component)), None)
+        part = _valve(system, part) if part.gathers else part
+        # ports for oil are no commands
+        inputs = [(item.name, getattr(part, item.name)) for item, spec in specs(type(part), "signal")]
+        ports = {item.name for item, spec in specs(type(part), "signal") if spec.draws}
+        commands = [
+            (name, value) for name, value in inputs if name not in ports and name not in ("density", "viscosity")
+        ]
+        inner = next((value for _, value in commands or inputs if isinstance(value, Component)), None)
         if inner is None:
-            return f"{part.name}.{inputs[0][0]}", part
+            return f"{part.name}.{(commands or inputs)[0][0]}", part
         part = inner
+
+
+def _valve(system: System, oil: Component) -> Component:
+    """The spool valve that fills a volume of oil; the volume itself where there is none."""
+    valves = (one for one in system.processes if isinstance(one, SpoolValve))
+    return next((one for one in valves if isinstance(one.clutch, Component) and one.clutch.name == oil.name), oil)
 
 
 def _limits(found: tuple[str, Component], limits: Limits) -> tuple[str, float, float]:
@@ -88,6 +101,9 @@ class _Test:
         # the largest fraction of the capacity that slides
         self.sliding = np.array([_sliding(system, f"{prefix}.{name}") for name in self.names])
         self.sim = Simulator(system)
+        # one at a time where they share a pump
+        shared = any(type(process).gathers for process in system.processes)
+        self.groups = [[name] for name in self.names] if shared else [self.names]
         self._set({name: self._at(name, 0.0) for name in self.names})
         self.sim.advance(EMPTY)
         self.empty = self.sim.save()
@@ -139,9 +155,12 @@ class _Test:
 
     def _fill_times(self, made: Mapping[str, ElementActuator]) -> dict[str, float]:
         """The longest pulses behind which the elements only touch."""
-        low, high = dict.fromkeys(self.names, 0.0), dict.fromkeys(self.names, LONGEST)
+        return {name: time for names in self.groups for name, time in self._longest(made, names).items()}
+
+    def _longest(self, made: Mapping[str, ElementActuator], names: Sequence[str]) -> dict[str, float]:
+        low, high = dict.fromkeys(names, 0.0), dict.fromkeys(names, LONGEST)
         for _ in range(HALVINGS):
-            tried = {name: 0.5 * (low[name] + high[name]) for name in self.names}
+            tried = {name: 0.5 * (low[name] + high[name]) for name in names}
             peaks = self._pulse(made, tried)
             for name, peak in peaks.items():
                 (high if peak > OVER * TOUCH * made[name].most else low)[name] = tried[name]
@@ -151,7 +170,7 @@ class _Test:
         """Largest torque during a pulse of the full command, and behind it."""
         self.sim.restore(self.empty)
         begin, most = self.sim.time, np.zeros(len(self.names))
-        self._set({name: made[name].commands[-1] for name in self.names})
+        self._set({name: made[name].commands[-1] for name in times})
         ends = sorted((time, name) for name, time in times.items())
         for time, name in [*ends, (ends[-1][0] + BEHIND, "")]:
             while self.sim.time < begin + time - 1e-12:
@@ -159,20 +178,26 @@ class _Test:
                 most = np.maximum(most, self._torques())
             if name:
                 self._set({name: made[name].command(TOUCH * made[name].most)})
-        return dict(zip(self.names, most.tolist(), strict=True))
+        return {name: most for name, most in zip(self.names, most.tolist(), strict=True) if name in times}
 
     def _lags(self, made: Mapping[str, ElementActuator], times: Mapping[str, float]) -> dict[str, float]:
         """Time to 63 % of a step up to half of the torque, from where the elements touch."""
-        self._pulse(made, times)
+        return {name: lag for names in self.groups for name, lag in self._lagging(made, times, names).items()}
+
+    def _lagging(
+        self, made: Mapping[str, ElementActuator], times: Mapping[str, float], names: Sequence[str]
+    ) -> dict[str, float]:
+        self._pulse(made, {name: times[name] for name in names})
         self.sim.advance(BEHIND)
         first, begin, found = self._torques(), self.sim.time, dict[str, float]()
-        self._set({name: made[name].command(0.5 * made[name].most) for name in self.names})
-        while len(found) < len(self.names) and self.sim.time < begin + LONGEST:
+        self._set({name: made[name].command(0.5 * made[name].most) for name in names})
+        while len(found) < len(names) and self.sim.time < begin + LONGEST:
             self.sim.advance(LOOK)
             for name, start, value in zip(self.names, first, self._torques(), strict=True):
-                if name not in found and value - start > 0.632 * (0.5 * made[name].most - start):
+                waited = name in names and name not in found
+                if waited and value - start > 0.632 * (0.5 * made[name].most - start):
                     found[name] = self.sim.time - begin
-        return {name: found.get(name, LONGEST) for name in self.names}
+        return {name: found.get(name, LONGEST) for name in names}
 
 
 def _sliding(system: System, element: str) -> float:

@@ -41,6 +41,8 @@ NEEDED = 20.0
 NOTHING = 1e-3
 # part of the inertia phase in which the loop has settled and the slip is not over yet
 SETTLED = (0.4, 0.95)
+# part of it behind which what opens behind a piston is let go, where it carries nothing
+LET_GO = 0.2
 
 
 @dataclass
@@ -193,6 +195,9 @@ class ParallelSequence:
         for name, torque in self._needed(period, now).items():
             # what opens stays filled meanwhile: it may have to hold the input again
             do.carry(name, torque, with_)
+            if self._lets_go(name, torque):
+                do.open(name)
+                continue
             do.commands[name] = share * do.commands[name] + (1.0 - share) * self._held[name]
         change = -float(one.input @ self._start)
         if now.input_torque > 0.0 and change < 0.0:
@@ -272,10 +277,15 @@ class ParallelSequence:
             if jolt > self.jolt:
                 self.jolt, self.instants["jolt"] = jolt, self._now
 
+    def _lets_go(self, name: str, torque: float) -> bool:
+        """Whether an element that opens is no more wanted: one whose kiss point is taken too high would drag."""
+        idle = name in self.one.off and torque == 0.0
+        return idle and name in self.do.drivers and self._passed > LET_GO * self._time
+
     def _watch_torques(self, x: float, torques: Mapping[str, float], planned: Mapping[str, float]) -> None:
         """What the loop has to add to torques that were right if the commands were: the kiss point is elsewhere."""
         for name, torque in torques.items() if SETTLED[0] < x < SETTLED[1] else ():
-            if torque > 0.0 and planned[name] > 0.0:
+            if name in self.one.on and torque > 0.0 and planned[name] > 0.0:
                 self.missed.setdefault(name, Missed()).add(torque, torque - planned[name])
 
     def _y(self, now: Measured) -> Array:

@@ -22,5 +22,5 @@ class Opening(Component):
     )
     discharge: float = param("1", "discharge coefficient", default=DISCHARGE, above=0.0)
     transition: float = param(
-        "1", "Reynolds number at which the flow becomes turbulent", default=TRANSITION, above=0.0
+        "1", "number of Reynolds at which the flow becomes turbulent", default=TRANSITION, above=0.0
     )

@@ -8,6 +8,7 @@ from clutchwork.declare.schema import Role, specs
 from clutchwork.schematic.symbols.contacts import CONTACTS
 from clutchwork.schematic.symbols.gears import GEARS
 from clutchwork.schematic.symbols.heat import FLOW, FLOWS, PROCESS, PROCESSES
+from clutchwork.schematic.symbols.hydraulic import HYDRAULIC
 from clutchwork.schematic.symbols.hydrodynamic import HYDRODYNAMIC
 from clutchwork.schematic.symbols.meshes import MESHES
 from clutchwork.schematic.symbols.play import PLAY
@@ -16,7 +17,19 @@ from clutchwork.schematic.symbols.symbol import Symbol
 from clutchwork.schematic.symbols.torques import TORQUES, unknown
 from clutchwork.schematic.symbols.vehicles import VEHICLES
 
-OWN = {**CONTACTS, **GEARS, **MESHES, **RATIOS, **TORQUES, **PLAY, **HYDRODYNAMIC, **FLOWS, **PROCESSES, **VEHICLES}
+OWN = {
+    **CONTACTS,
+    **GEARS,
+    **MESHES,
+    **RATIOS,
+    **TORQUES,
+    **PLAY,
+    **HYDRAULIC,
+    **HYDRODYNAMIC,
+    **FLOWS,
+    **PROCESSES,
+    **VEHICLES,
+}
 
 
 def symbol_of(element: Any) -> Symbol:

@@ -98,7 +98,8 @@ def wet_drag(pen: SymbolPen, shown: Drawn) -> None:
     ends(pen, shown, -7.0, 7.0)
 
 
-def _to_shaft(pen: SymbolPen, shown: Drawn, radius: float) -> None:
+def to_shaft(pen: SymbolPen, shown: Drawn, radius: float) -> None:
+    """Lines from a symbol to its shaft."""
     for side in (LEFT, RIGHT):
         if side in shown.sides.values():
             pen.line((side * radius, 0.0), (side * shown.half, 0.0), look=shown.line)
@@ -115,7 +116,7 @@ def torque(pen: SymbolPen, shown: Drawn) -> None:
     else:
         pen.arc(0.0, 0.0, 6.0, -0.35 * pi, 1.2 * pi, look=INK._replace(width=1.2))
         pen.arrow((-5.3, -5.6), (0.35, -0.93), 4.2)
-    _to_shaft(pen, shown, 10.5)
+    to_shaft(pen, shown, 10.5)
 
 
 def prescribed(turning: str, moving: str) -> Callable[[SymbolPen, Drawn], None]:
@@ -125,7 +126,7 @@ def prescribed(turning: str, moving: str) -> Callable[[SymbolPen, Drawn], None]:
         pen.circle(0.0, 0.0, 10.5, look=BLANK)
         pen.circle(0.0, 0.0, 8.6, look=MarkStyle(width=0.6))
         pen.text(0.0, -2.8, turning if shown.line.colour == INK.colour else moving, 9.5)
-        _to_shaft(pen, shown, 10.5)
+        to_shaft(pen, shown, 10.5)
 
     return draw
 
@@ -134,7 +135,7 @@ def motor(pen: SymbolPen, shown: Drawn) -> None:
     """A circle with the letter of a machine."""
     pen.circle(0.0, 0.0, 10.5, look=BLANK)
     pen.text(0.0, -3.2, "M", 10.0)
-    _to_shaft(pen, shown, 10.5)
+    to_shaft(pen, shown, 10.5)
 
 
 def engine(pen: SymbolPen, shown: Drawn) -> None:
@@ -145,7 +146,7 @@ def engine(pen: SymbolPen, shown: Drawn) -> None:
     pen.box(-3.6, 1.5, 3.6, 5.5, look=BODY)
     pen.line((0.0, 3.0), (2.4, -5.2), look=INK._replace(width=1.4))
     pen.circle(0.0, -5.6, 3.2, look=MarkStyle(width=0.8))
-    _to_shaft(pen, shown, 11.0)
+    to_shaft(pen, shown, 11.0)
 
 
 def over_speed(points: Callable[[Any], list[Point]]) -> Callable[[SymbolPen, Drawn], None]:
@@ -166,7 +167,7 @@ def over_speed(points: Callable[[Any], list[Point]]) -> Callable[[SymbolPen, Dra
         # the course stands upright also in a mirrored box
         line = [(pen.sign * (first + span * x / wide), zero + tall * y / size) for x, y in found]
         pen.line(*line, look=INK._replace(width=1.5))
-        _to_shaft(pen, shown, 11.0)
+        to_shaft(pen, shown, 11.0)
 
     return draw
 

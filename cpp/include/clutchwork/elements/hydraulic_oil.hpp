@@ -4,7 +4,7 @@
 namespace clutchwork::elements {
 
 /// Viscosity and density of an oil at its temperature. docs/theory/hydraulics.md (1)
-struct Oil : declared::Oil {
+struct HydraulicOil : declared::HydraulicOil {
   template <class T>
   struct Params {
     T viscosity_40;   ///< [m2/s]

@@ -1,0 +1,107 @@
+"""Symbols of oil: volumes, openings, valves, accumulators and pumps, after ISO 1219."""
+
+from __future__ import annotations
+
+from clutchwork.schematic.look import INK, SIGNAL_BODY, MarkStyle
+from clutchwork.schematic.pen import SymbolPen
+from clutchwork.schematic.symbols.symbol import Drawn, Symbol
+from clutchwork.schematic.symbols.torques import BLANK, to_shaft
+
+SLOT = BLANK._replace(colour=SIGNAL_BODY.colour, width=SIGNAL_BODY.width)
+FULL = SIGNAL_BODY._replace(fill="#E6DDF0", width=0.7)
+THIN = SIGNAL_BODY._replace(width=0.8)
+
+
+def _drop(pen: SymbolPen, x: float, y: float, size: float, look: MarkStyle) -> None:
+    sides = ((x + size, y - 0.3 * size), (x, y - 1.2 * size), (x - size, y - 0.3 * size))
+    pen.area((x, y + 1.6 * size), *sides, look=look)
+
+
+def oil(pen: SymbolPen, _: Drawn) -> None:
+    """A drop beside a thermometer."""
+    pen.box(-11.0, -8.0, 11.0, 8.0, look=SLOT)
+    _drop(pen, -4.0, -0.5, 3.6, FULL)
+    pen.line((5.0, -2.0), (5.0, 5.5), look=THIN)
+    pen.circle(5.0, -4.0, 2.0, look=FULL)
+
+
+def volume(pen: SymbolPen, _: Drawn) -> None:
+    """A line full of oil."""
+    pen.box(-11.0, -6.0, 11.0, 6.0, look=SLOT)
+    pen.box(-9.5, -4.5, 9.5, 4.5, look=FULL)
+
+
+def orifice(pen: SymbolPen, _: Drawn) -> None:
+    """A line with a narrow place."""
+    pen.line((-12.0, 0.0), (12.0, 0.0), look=SIGNAL_BODY)
+    for sign in (1.0, -1.0):
+        bend = ((-5.0, sign * 6.0), (-2.2, sign * 2.6), (2.2, sign * 2.6), (5.0, sign * 6.0))
+        pen.line(*bend, look=SIGNAL_BODY)
+
+
+def relief(pen: SymbolPen, _: Drawn) -> None:
+    """A box with an arrow beside its line, and a spring."""
+    pen.box(-7.0, -7.0, 7.0, 7.0, look=SLOT)
+    pen.line((-3.0, -7.0), (-3.0, 4.0), look=THIN)
+    pen.arrow((-3.0, 6.0), (0.0, 1.0), 3.4, look=SIGNAL_BODY)
+    spring = ((7.0, 0.0), (8.0, 2.6), (9.5, -2.6), (11.0, 2.6), (12.0, 0.0))
+    pen.line(*spring, look=THIN)
+
+
+def spool(pen: SymbolPen, _: Drawn) -> None:
+    """Two boxes: supply to clutch, clutch to exhaust."""
+    pen.box(-12.0, -6.5, 0.0, 6.5, look=SLOT)
+    pen.box(0.0, -6.5, 12.0, 6.5, look=SLOT)
+    pen.line((-8.0, -6.5), (-5.0, 3.6), look=THIN)
+    pen.arrow((-4.2, 6.0), (0.3, 0.95), 3.4, look=SIGNAL_BODY)
+    pen.line((8.0, 6.5), (5.0, -3.6), look=THIN)
+    pen.arrow((4.2, -6.0), (-0.3, -0.95), 3.4, look=SIGNAL_BODY)
+
+
+def accumulator(pen: SymbolPen, shown: Drawn) -> None:
+    """A vessel with gas above its oil, or with a spring."""
+    pen.box(-6.0, -9.0, 6.0, 9.0, look=SLOT)
+    pen.box(-5.0, -8.0, 5.0, -0.6, look=FULL)
+    pen.line((-6.0, 0.0), (6.0, 0.0), look=SIGNAL_BODY)
+    if getattr(shown.element, "against", "gas") == "spring":
+        pen.line((0.0, 0.0), (-3.0, 2.0), (3.0, 4.0), (-3.0, 6.0), (0.0, 9.0), look=THIN)
+    else:
+        pen.area((-2.2, 6.0), (2.2, 6.0), (0.0, 2.4), look=SLOT)
+
+
+def pump(pen: SymbolPen, shown: Drawn) -> None:
+    """A circle with a triangle that points outwards."""
+    pen.circle(0.0, 0.0, 10.5, look=BLANK)
+    pen.area((-3.6, 4.4), (3.6, 4.4), (0.0, 10.2), look=INK._replace(fill=INK.colour))
+    to_shaft(pen, shown, 10.5)
+
+
+def oil_of_pump(pen: SymbolPen, _: Drawn) -> None:
+    """The same without a shaft."""
+    pen.circle(0.0, 0.0, 8.5, look=SLOT)
+    pen.area((-3.0, 3.4), (3.0, 3.4), (0.0, 8.2), look=SIGNAL_BODY._replace(fill=SIGNAL_BODY.colour))
+
+
+def valve_body(pen: SymbolPen, shown: Drawn) -> None:
+    """A pump in a casing with valves."""
+    pen.box(-12.0, -11.0, 12.0, 11.0, look=BLANK)
+    pen.circle(0.0, -3.4, 5.0, look=INK)
+    pen.area((-1.8, -1.2), (1.8, -1.2), (0.0, 1.4), look=INK._replace(fill=INK.colour))
+    for x in (-10.0, -3.0, 4.0):
+        pen.box(x, 4.2, x + 3.0, 8.4, look=MarkStyle(width=0.8))
+        pen.box(x + 3.0, 4.2, x + 6.0, 8.4, look=MarkStyle(width=0.8))
+    to_shaft(pen, shown, 12.0)
+
+
+HYDRAULIC = {
+    "hydraulic_oil": Symbol(oil, 12.0, 9.0, 9.0),
+    "oil_volume": Symbol(volume, 12.0, 7.0, 7.0),
+    "orifice": Symbol(orifice, 12.0, 7.0, 7.0),
+    "relief_valve": Symbol(relief, 13.0, 8.0, 8.0),
+    "spool_valve": Symbol(spool, 13.0, 8.0, 8.0),
+    "accumulator": Symbol(accumulator, 12.0, 10.0, 10.0),
+    "pump_flow": Symbol(oil_of_pump, 12.0, 9.5, 9.5),
+    "pump": Symbol(pump, 15.0, 11.0, 11.0),
+    "pump_torque": Symbol(pump, 15.0, 11.0, 11.0),
+    "valve_body": Symbol(valve_body, 16.0, 12.0, 12.0),
+}
