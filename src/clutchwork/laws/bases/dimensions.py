@@ -23,7 +23,7 @@ NAMES = ("kg", "m", "s", "K", "A")
 REMEDY = "give its numbers other units, or none, which fits any"
 NUMBER = (Fraction(0),) * len(NAMES)
 # results that take numbers without a unit, and give one
-PURE = {"exp", "exp_behind", "log", "tanh", "atan", "sin", "cos"}
+PURE = {"exp", "exp_behind", "fade", "fade_behind", "log", "tanh", "atan", "sin", "cos"}
 SAME = {"add": "adds", "subtract": "subtracts", "smaller": "compares", "larger": "compares", "pick": "takes"}
 SAME |= {"less": "compares", "at_most": "compares"}
 TRUTHS = {"less", "at_most"}
@@ -84,6 +84,9 @@ def _unit(operation: str, of: Sequence[Powers], exponent: float | None) -> tuple
     """The unit of a result, and what is wrong."""
     if operation in PURE or operation == "power":
         return _of_function(operation, of, exponent)
+    if operation.endswith("_product"):
+        product, _ = _unit("multiply", of[1:], None)
+        return _unit(operation.removesuffix("_product"), (of[0], product), None)
     if operation in SAME:
         first, second = of[-2:]
         made = second if first is None else first
@@ -105,9 +108,9 @@ def _of_function(operation: str, of: Sequence[Powers], exponent: float | None) -
     if operation == "power" and exponent is not None:
         share = Fraction(exponent).limit_denominator(1000)
         return of[0] and tuple(power * share for power in of[0]), ""
-    name = operation.removesuffix("_behind")
+    name = operation.removesuffix("_behind").replace("fade", "exp")
     # behind the zero of the slip exp looks at that too
-    taken = of[:1] if name != operation else of
+    taken = of[:1] if operation.endswith("_behind") else of
     wrong = next((f"takes {name} of {shown(one)}" for one in taken if one not in (None, NUMBER)), "")
     return NUMBER, wrong
 

@@ -106,6 +106,24 @@ class Graph:
         parts = [self.nodes[i] for i in of]
         if name in FOLDED and all(part.operation == "constant" for part in parts):
             return self.constant(FOLDED[name](*(part.value for part in parts)), source)
+        return self._fused(name, list(of), parts, source)
+
+    def _fused(self, name: str, of: list[int], parts: Sequence[Node], source: Source) -> int:
+        """An operation as one word with another where that exists, to the same bits."""
+        last = parts[-1]
+        if name in ("multiply", "divide") and "negate" in (parts[0].operation, last.operation):
+            # the sign of a product or quotient is put behind it
+            place = int(parts[0].operation != "negate")
+            of[place] = parts[place].of[0]
+            return self.operation("negate", [self.operation(name, of, source)], source)
+        if name in ("add", "subtract") and last.operation == "negate":
+            return self.operation("subtract" if name == "add" else "add", [of[0], last.of[0]], source)
+        if name == "add" and parts[0].operation == "multiply" and last.operation != "multiply":
+            of, last = of[::-1], parts[0]
+        if name in ("add", "subtract") and last.operation == "multiply":
+            return self.add(Node(f"{name}_product", (of[0], *last.of)), source)
+        if name in ("exp", "exp_behind") and parts[0].operation == "negate":
+            return self.add(Node(name.replace("exp", "fade"), (parts[0].of[0], *of[1:])), source)
         return self.add(Node(name, tuple(of)), source)
 
     def moves_with_slip(self, i: int) -> bool:

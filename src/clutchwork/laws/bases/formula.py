@@ -57,7 +57,7 @@ class FormulaLaw(Law):
     expression: str = formula(
         "coefficient over the slip `v` [rad/s], `temperature` [K], `pressure` [Pa] and the numbers of the law",
         kw_only=False,
-        example="0.24 + 0.06*exp(-v/3)",
+        example="0.1 + 0.05*exp(-v/2)",
     )
     at_rest: str | None = formula("coefficient at rest, in the same names but the slip", default=None)
     temperature: SignalLike | None = signal(

@@ -18,12 +18,12 @@ Points = tuple[tuple[float, float, float], ...]
 
 # what the core does, in the order of its numbers there: declared.gen.hpp has them from here
 OPERATIONS = (
-    "add", "subtract", "multiply", "divide", "negate", "size", "smaller", "larger", "power", "root", "exp",
-    "exp_behind", "log", "tanh", "atan", "sin", "cos", "sign", "less", "at_most", "pick",
+    "add", "subtract", "add_product", "subtract_product", "multiply", "divide", "negate", "size", "smaller", "larger", "power", "root", "exp",
+    "exp_behind", "fade", "fade_behind", "log", "tanh", "atan", "sin", "cos", "sign", "less", "at_most", "pick",
 )  # fmt: skip
 # numbers that a formula may have at once: what it reads, its constants and its results
 MOST_REGISTERS = 64
-# an instruction says what it does, and for `pick` where its question stands, in one word
+# an instruction says what it does, and where the first of three numbers stands, in one word
 PER_WORD = 64
 # beyond these exp stays where it is behind the zero of the slip; a base of a power is not below, nor what has a root
 HIGHEST, LOWEST, LOWEST_ROOT = 20.0, 1e-12, 1e-24
@@ -49,9 +49,8 @@ class Program(NamedTuple):
         """Constants, then instructions: operation, first and second register."""
         words = [(value, 0.0, 0.0) for value in self.constants]
         for node in self.nodes:
-            asked = node.of[0] if node.operation == "pick" else 0
-            first, second = (*node.of[-2:], 0)[:2] if len(node.of) > 1 else (node.of[0], 0)
-            words.append((OPERATIONS.index(node.operation) + PER_WORD * asked, first, second))
+            of = {1: (0, *node.of, 0), 2: (0, *node.of), 3: node.of}[len(node.of)]
+            words.append((OPERATIONS.index(node.operation) + PER_WORD * of[0], of[1], of[2]))
         return tuple((float(a), float(b), float(c)) for a, b, c in words) or ((0.0, 0.0, 0.0),)
 
     @property
@@ -88,7 +87,7 @@ def _computed(operation: str, of: Sequence[float]) -> float:
     except ZeroDivisionError:
         return math.nan if of[0] == 0.0 or math.isnan(of[0]) else math.copysign(math.inf, of[0])
     except (OverflowError, ValueError):
-        return math.inf if operation in ("exp", "exp_behind", "power") else math.nan
+        return math.inf if operation in ("exp", "exp_behind", "power", "fade", "fade_behind") else math.nan
 
 
 CALLS: dict[str, Callable[..., float]] = {
@@ -104,6 +103,10 @@ CALLS: dict[str, Callable[..., float]] = {
     "power": lambda a, b: math.nan if a < 0.0 else math.pow(max(a, LOWEST), b),
     "root": lambda a: math.nan if a < 0.0 else math.sqrt(a) if a > LOWEST_ROOT else 0.0,
     "exp": math.exp,
+    "add_product": lambda a, b, c: a + b * c,
+    "subtract_product": lambda a, b, c: a - b * c,
+    "fade": lambda a: math.exp(-a),
+    "fade_behind": lambda a, slip: math.exp(min(-a, HIGHEST) if slip < 0.0 else -a),
     "exp_behind": lambda a, slip: math.exp(min(a, HIGHEST) if slip < 0.0 else a),
     "log": math.log,
     "tanh": math.tanh,
