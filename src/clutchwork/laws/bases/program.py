@@ -18,8 +18,9 @@ Points = tuple[tuple[float, float, float], ...]
 
 # what the core does, in the order of its numbers there: declared.gen.hpp has them from here
 OPERATIONS = (
-    "add", "subtract", "add_product", "subtract_product", "multiply", "divide", "negate", "size", "smaller", "larger", "power", "root", "exp",
-    "exp_behind", "fade", "fade_behind", "log", "tanh", "atan", "sin", "cos", "sign", "less", "at_most", "pick",
+    "add", "subtract", "add_product", "subtract_product", "multiply", "divide", "negate", "size", "smaller", "larger",
+    "power", "root", "exp", "exp_behind", "fade", "fade_behind", "log", "tanh", "atan", "sin", "cos", "sign", "less",
+    "at_most", "pick",
 )  # fmt: skip
 # numbers that a formula may have at once: what it reads, its constants and its results
 MOST_REGISTERS = 64
