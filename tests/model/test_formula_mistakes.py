@@ -188,6 +188,13 @@ def test_a_name_that_a_law_has_already_is_an_unknown_field() -> None:
         cw.Formula("0.3", band=0.1)
 
 
+def test_a_page_has_no_room_for_it(tmp_path: Path) -> None:
+    d = cw.Driveline("page")
+    d.add(cw.Brake("b", shaft=d.shaft("a", inertia=1.0), friction=cw.Formula("0.3"), gain=1.0, pressure=1.0))
+    with pytest.raises(ValueError, match="the friction of 'b' is a Formula, which pages have no room for; take a law"):
+        d.simulate(0.1).page(tmp_path / "page.html")
+
+
 @pytest.mark.parametrize("text", ["1/s", "rad/s", "kg m/s2", "1/(K m)", "N m", "Pa"])
 def test_units_are_written_as_they_are_read(text: str) -> None:
     assert units.powers_of(in_si(units.powers_of(text))) == units.powers_of(text)
