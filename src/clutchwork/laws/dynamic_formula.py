@@ -67,7 +67,9 @@ class DynamicFormula(FormulaLaw):
         numbers = {one.name for one in type(self).numbers}
         taken = [name for name in rates if not _is_state(name) or name in numbers]
         if taken:
-            return [(f"rates.{name}", "is no name of a state", "give it one that nothing else has") for name in taken]
+            return [
+                (f"rates.{name}", "is not a name for a state", "give it one that nothing else has") for name in taken
+            ]
         return super().problems()
 
     def faults(self, program: Program) -> Iterator[Found]:

@@ -14,7 +14,7 @@ from clutchwork.laws.bases.expression import INPUTS, PRESSURE, SLIP, TEMPERATURE
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
 
-    from clutchwork.laws.bases.expression import Node
+    from clutchwork.laws.bases.expression import FormulaNode
     from clutchwork.laws.bases.program import Program
 
 # powers of kg, m, s, K and A; None: any
@@ -74,7 +74,7 @@ def _mistakes(program: Program, known: Mapping[str, Powers]) -> list[Mistake]:
     return found
 
 
-def _exponent(node: Node, begin: int, program: Program) -> float | None:
+def _exponent(node: FormulaNode, begin: int, program: Program) -> float | None:
     """The exponent of a power, where it is a constant."""
     place = node.of[1] - begin + len(program.constants) if node.operation == "power" else -1
     return program.constants[place] if 0 <= place < len(program.constants) else None

@@ -7,12 +7,12 @@ from functools import lru_cache
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 from clutchwork.base.plural import counted
-from clutchwork.laws.bases.expression import INPUTS, SLIP, Graph, Mistake, Reader
+from clutchwork.laws.bases.expression import INPUTS, SLIP, FormulaGraph, Mistake, Reader
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping, Sequence
 
-    from clutchwork.laws.bases.expression import Node, Source
+    from clutchwork.laws.bases.expression import FormulaNode, Source
 
 Points = tuple[tuple[float, float, float], ...]
 
@@ -36,7 +36,7 @@ class Program(NamedTuple):
     names: tuple[str, ...]  # of the numbers, in order
     states: tuple[str, ...]
     constants: tuple[float, ...]
-    nodes: tuple[Node, ...]  # instructions, their numbers being registers
+    nodes: tuple[FormulaNode, ...]  # instructions, their numbers being registers
     sources: tuple[Source, ...]
     coefficient: int  # registers of the results
     at_rest: int
@@ -75,7 +75,7 @@ class Program(NamedTuple):
         return registers
 
     def first_fault(self, registers: Sequence[float]) -> Source | None:
-        """The first instruction whose result is no finite number; None where all are."""
+        """The first instruction whose result is not finite; None where all are."""
         begin = len(registers) - len(self.nodes)
         results = zip(self.nodes, self.sources, registers[begin:], strict=True)
         return next((source for _, source, value in results if not math.isfinite(value)), None)
@@ -135,7 +135,7 @@ class Texts(NamedTuple):
 def compiled(texts: Texts) -> tuple[Program | None, tuple[Mistake, ...]]:
     """The program of a law, None where there are mistakes, and all of these."""
     states = tuple(name for name, _ in texts.rates)
-    graph = Graph((*INPUTS, *states, *texts.names), texts.forward)
+    graph = FormulaGraph((*INPUTS, *states, *texts.names), texts.forward)
     written: list[tuple[str, Any, tuple[str, ...]]] = [("expression", texts.expression, ())]
     written += [(f"rates.{name}", text, ()) for name, text in texts.rates]
     written += [] if texts.at_rest is None else [("at_rest", texts.at_rest, (SLIP, *states))]
@@ -153,7 +153,7 @@ def compiled(texts: Texts) -> tuple[Program | None, tuple[Mistake, ...]]:
     return made, ()
 
 
-def _laid_out(graph: Graph, roots: Sequence[int], states: tuple[str, ...], texts: Texts) -> Program:
+def _laid_out(graph: FormulaGraph, roots: Sequence[int], states: tuple[str, ...], texts: Texts) -> Program:
     """Registers in the order in which they are computed: first what the coefficient needs, then the rest."""
     leaves = (*INPUTS, *states, *texts.names)
     register: dict[int, int] = {i: leaves.index(node.name) for i, node in enumerate(graph.nodes) if node.name}
@@ -183,7 +183,7 @@ def _laid_out(graph: Graph, roots: Sequence[int], states: tuple[str, ...], texts
     )
 
 
-def _collect(graph: Graph, root: int, needed: list[int], seen: set[int]) -> None:
+def _collect(graph: FormulaGraph, root: int, needed: list[int], seen: set[int]) -> None:
     """What a number follows from, before it."""
     if root in seen:
         return
