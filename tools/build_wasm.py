@@ -8,6 +8,7 @@ from __future__ import annotations
 import gzip
 import os
 import re
+import runpy
 import subprocess
 import sys
 import time
@@ -41,6 +42,8 @@ FLAGS = [
     "-DCLUTCHWORK_ONE_SIZE",
 ]
 SECTION = "clutchwork"
+# friction laws that no page has room for
+LAWS_LEFT_OUT = runpy.run_path(str(ROOT / "src/clutchwork/page/left_out.py"))["LAWS"]
 
 
 # small rather than fast, and as a whole: every part of the core is there once
@@ -70,17 +73,25 @@ def generated() -> Path:
     return folder.parent
 
 
+def mask_of_laws() -> int:
+    """A bit for each friction law that is compiled, in the order of their numbers."""
+    text = (MADE / "include" / "clutchwork" / "registry.gen.hpp").read_text(encoding="utf-8")
+    known = re.findall(r"#include <clutchwork/laws/(\w+)\.hpp>", text)
+    return sum(1 << number for number, kind in enumerate(known) if kind not in LAWS_LEFT_OUT)
+
+
 def compiled() -> list[Path]:
     """Objects of all sources, made side by side."""
     places = [ROOT / "cpp" / "include", ROOT / "cpp" / "src", generated()]
     includes = [f"-I{place}" for place in places]
+    laws = f"-DCLUTCHWORK_LAW={mask_of_laws():#x}ull"
     folder = MADE / "objects"
     folder.mkdir(parents=True, exist_ok=True)
 
     def one(source: Path) -> Path:
         made = folder / f"{source.stem}.o"
         inlined = () if source.stem in HOT else ("-DCLUTCHWORK_HOT=inline",)
-        zig(*TARGET, *FLAGS, *inlined, *includes, "-c", source, "-o", made)
+        zig(*TARGET, *FLAGS, laws, *inlined, *includes, "-c", source, "-o", made)
         return made
 
     # the longest first

@@ -98,7 +98,8 @@ def _law(kind: str, cls: Any) -> Iterator[str]:
         yield f"State: {'; '.join(_states(cls.states))}.{_in_use(cls)}\n"
     yield header(kind, "laws")
     yield f"## Example\n\n{_example(kind, cls)}\n"
-    yield f"## Turn the parameters\n\n{_live(kind, cls)}\n"
+    if kind in law_pages.kinds():
+        yield f"## Turn the parameters\n\n{_live(kind, cls)}\n"
     yield f"## Equations\n\n{_symbols(cls)}\n\n{_equations(kind)}\n"
 
 

@@ -4,6 +4,7 @@
 #include <clutchwork/components/lanes.hpp>
 #include <vector>
 
+#include "check.hpp"
 #include "fixture.hpp"
 
 using namespace clutchwork;
@@ -13,10 +14,6 @@ namespace {
 
 using F = laws::Formula;
 using D = laws::DynamicFormula;
-
-/// One number in each lane.
-double lane(double x, int) { return x; }
-double lane(const Lanes<2>& x, int i) { return x[i]; }
 
 /// low + (high - low) exp(-v/width), as Python writes it; at rest `high`.
 struct Falling {
@@ -44,7 +41,7 @@ void values() {
   for (double v : {0.0, 1e-9, 0.2, 3.0, 100.0, -0.1}) {
     const At<double> at{v, nullptr, input, 0, f.points.data()};
     CHECK(check::same_bits(F::slide(f.p(), at), expected(v)));
-    CHECK(F::hold(f.p(), at) == 0.4);
+    CHECK(F::hold(f.p(), At<double>{0, nullptr, input, 0, f.points.data()}) == 0.4);
     // duals have the same value, and the slope of the formula
     using S = Dual<double, 2>;
     const S inputs[2] = {S(300), S(1e5)};
@@ -74,8 +71,7 @@ void lanes_have_the_bits_of_one() {
     Falling one;
     one.params[4] = 0.3 + 0.01 * i;
     const double plain[2] = {300, 1e5};
-    CHECK(
-        check::same_bits(lane(together, i), F::slide(one.p(), At<double>{v[i], nullptr, plain, 0, one.points.data()})));
+    CHECK(check::same_bits(together[i], F::slide(one.p(), At<double>{v[i], nullptr, plain, 0, one.points.data()})));
   }
 }
 

@@ -23,7 +23,7 @@ sys.path.insert(0, str(ROOT / "tools"))
 import gen_docs
 import law_pages
 
-KINDS = sorted(REGISTRY[Role.LAW])
+KINDS = law_pages.kinds()
 # it ends where its disc first comes to rest
 ENDS_EARLY = "naive_sign"
 # random positions

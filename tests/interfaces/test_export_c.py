@@ -79,7 +79,7 @@ def driveline() -> cw.Driveline:
     d.add(cw.Convection("cooling", hot=clutch.plates, cold=d.ambient("air"), conductance=5.0))
     d.add(cw.Gear("gear", input=plate, output=half, ratio=2.0))
     d.add(cw.SpringDamper("shaft", base=half, follower=wheel, stiffness=4e3, damping=5.0))
-    drag = cw.Formula("mu + f*exp(-v/w) + 0.01*tanh(v)", mu=0.2, f=0.1, w="50 rpm")
+    drag = cw.Formula("mu + f*exp(-v/w) + 0.01*tanh(v/w)", mu=0.2, f=0.1, w="50 rpm")
     d.add(cw.Brake("drag", shaft=wheel, friction=drag, gain=1.0, normal_force=2.0))
     d.add(cw.Torque("load", shaft=wheel, torque=cw.Sampled(lambda *_: 0.0, 100.0)))
     return d

@@ -45,7 +45,7 @@ def test_what_is_right_has_no_mistakes() -> None:
         ("[mu_k]", "expression has '[mu_k]' at character 1, which has no meaning"),
         ("(lambda: 1)()", "expression has the unknown function '(lambda: 1)()' at character 1"),
         ("__import__('os').getcwd()", "expression has the unknown function"),
-        ("'0.3'", "expression has \"'0.3'\" at character 1, which is no number"),
+        ("'0.3'", "expression has \"'0.3'\" at character 1, which is not a number"),
         ("exp(mu_k, mu_s)", "expression gives 'exp(mu_k, mu_s)' at character 1 2 arguments; exp takes 1 number"),
         ("2*(v < v_s)", "expression takes the comparison 'v < v_s' at character 4 as a number"),
         ("where(mu_k, 0.3, 0.2)", "expression asks whether 'mu_k' at character 7, which is a number; compare it"),
@@ -79,10 +79,12 @@ def test_an_expression_that_cannot_be_read(text: str, told: str) -> None:
     ],
 )  # fmt: skip
 def test_units_that_do_not_fit(text: str, told: str) -> None:
-    numbers = {name: value for name, value in (("mu", 0.3), ("w", "30 rpm")) if name in text}
-    given = {"temperature": 300.0} if "temperature" in text else {}
-    (said,) = mistakes(cw.Formula(text, **given, **numbers))
-    assert said.startswith(told)
+    given: dict[str, Any] = {"temperature": 300.0} if "temperature" in text else {}
+    said = mistakes(cw.Formula(text, **given, mu=0.3, w="30 rpm"))
+    assert said[0].startswith(told)
+    # numbers without units fit any
+    said = mistakes(cw.Formula(text, **given, mu=0.3, w=3.0))
+    assert not any("[" in one for one in said)
 
 
 def test_masses_slip_in_metres_per_second() -> None:
@@ -142,8 +144,8 @@ def test_inputs_that_nobody_gives() -> None:
     ("fields", "told"),
     [
         ({"rates": {}}, "rates must be a table of 1 to 4 rates by the names of states"),
-        ({"rates": {"v": "s*mu"}}, "rates.v is no name of a state; give it one that nothing else has"),
-        ({"rates": {"torque": "s*mu"}}, "rates.torque is no name of a state"),
+        ({"rates": {"v": "s*mu"}}, "rates.v is not a name for a state; give it one that nothing else has"),
+        ({"rates": {"torque": "s*mu"}}, "rates.torque is not a name for a state"),
         ({"rates": {"z": "s*(v - w)*mu"}}, "rates.z has the unknown name 'w' at character 8"),
         ({"expression": "-z"}, "expression is -0.3 in steady sliding at a slip of 0.001 rad/s: friction that drives"),
         ({"expression": "z + 0.1*sign(v)"}, "expression jumps from -0.1 to 0.1 where the slip changes its sign"),
@@ -186,6 +188,13 @@ friction = {type = "formula", expression = "mu + nu*v", mu = 0.3, w = "1 rpm"}
 def test_a_name_that_a_law_has_already_is_an_unknown_field() -> None:
     with pytest.raises(cw.UseError, match="unknown field 'band'"):
         cw.Formula("0.3", band=0.1)
+
+
+def test_a_page_has_no_room_for_it(tmp_path: Path) -> None:
+    d = cw.Driveline("page")
+    d.add(cw.Brake("b", shaft=d.shaft("a", inertia=1.0), friction=cw.Formula("0.3"), gain=1.0, pressure=1.0))
+    with pytest.raises(ValueError, match="the friction of 'b' is a Formula, which pages have no room for; take a law"):
+        d.simulate(0.1).page(tmp_path / "page.html")
 
 
 @pytest.mark.parametrize("text", ["1/s", "rad/s", "kg m/s2", "1/(K m)", "N m", "Pa"])

@@ -226,6 +226,16 @@ def test_plots():
 def test_names_of_contacts_and_signals():
     run = _driveline().simulate(1.0)
     assert len(run.events.of("c1")) > 0
+    locks = [event for event in run.events if event.element == "c1" and event.after == "locked"]
+    assert list(run.events.of("c1", after="locked")) == locks
+    assert list(run.events.of(after="locked", cause="slip zero", before="forward")) == [
+        event for event in run.events if (event.before, event.after, event.cause) == ("forward", "locked", "slip zero")
+    ]
+    assert list(run.events.of()) == list(run.events)
+    with pytest.raises(cw.UnknownName, match="no after 'lockd'; did you mean 'locked'"):
+        run.events.of(after="lockd")
+    with pytest.raises(cw.UnknownName, match="no cause 'sun'; cause is one of slip zero, torque limit"):
+        run.events.of(cause="sun")
     for events in (run.events, run.events[:0], run.events.changes(), run.events.of("c1"), run.events.at_start()):
         with pytest.raises(UnknownName, match=r"^no contact 'c2'; did you mean 'c1'\? contacts are c1$"):
             events.of("c2")

@@ -10,7 +10,6 @@ import numpy as np
 import pytest
 
 import clutchwork as cw
-from clutchwork.declare.schema import REGISTRY, Role
 from clutchwork.page.page import quiet_data
 from support.project import ROOT
 
@@ -23,7 +22,7 @@ SHOWN = ("sweep.torque", "loop.torque", "disc.speed")
 SAME = 1e-13
 
 
-@pytest.mark.parametrize("kind", sorted(REGISTRY[Role.LAW]))
+@pytest.mark.parametrize("kind", law_pages.kinds())
 def test_a_law_on_its_page_is_that_of_python(kind: str, engine: Any) -> None:
     random, times = np.random.default_rng(15), np.linspace(0.0, 2.5, 101)
     with warnings.catch_warnings():

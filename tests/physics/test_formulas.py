@@ -169,6 +169,13 @@ def test_conditions_choose() -> None:
     assert coefficients(law, 2e3)[0] == 0.3
 
 
+def test_beyond_where_it_was_looked_at_it_transmits_nothing() -> None:
+    law = cw.Formula("mu - k*v", mu=0.3, k="1e-3 s/rad")
+    assert law.problems() == []
+    assert coefficients(law, 200.0)[0] == pytest.approx(0.1, rel=1e-14)
+    assert coefficients(law, 1000.0)[0] == 0.0
+
+
 def test_copies_are_equal() -> None:
     for law in (cw.Formula("mu + f*exp(-v/w)", mu=0.2, f=0.1, w="20 rpm"), cw.DynamicFormula(**LUGRE, **BRISTLE)):
         for other in (pickle.loads(pickle.dumps(law)), copy.deepcopy(law), replace(law)):

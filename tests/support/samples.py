@@ -122,8 +122,27 @@ def _signal(name: str, spec: Spec) -> Any:
     return number(name, spec) if spec.bound else cw.Step(height=2.0, start=0.5)
 
 
+# laws that are written down, with numbers that they name: the declaration has none
+BENDING = "v - abs(v)*z/(kinetic + (static - kinetic)*exp(-(v/speed)**2))"
+CURVE = {"static": 0.15, "kinetic": 0.1, "speed": 2.0}
+WRITTEN: dict[str, dict[str, Any]] = {
+    "formula": {"expression": "kinetic + (static - kinetic)*exp(-v/speed)", **CURVE},
+    "dynamic_formula": {
+        "expression": f"z + damping*({BENDING}) + viscous*v",
+        "rates": {"z": f"stiffness*({BENDING})"},
+        "at_rest": "static",
+        **CURVE,
+        "stiffness": 1e3,
+        "damping": 1e-3,
+        "viscous": 1e-3,
+    },
+}
+
+
 def fields(cls: type, nodes: Mapping[str, Any]) -> dict[str, Any]:
     """Values for all fields that must be given or have an example, alternatives and teeth left out."""
+    if getattr(cls, "takes_numbers", False):
+        return dict(WRITTEN[cls.kind])  # type: ignore[attr-defined]
     needed = {names[0] for names, spec in inputs(cls) if spec.otherwise is None}
     made = {
         item.name: value(item.name, spec, nodes)

@@ -41,10 +41,10 @@ class DynamicFormula(FormulaLaw):
 
     sticks: ClassVar[bool] = False
 
-    at_rest: str = formula("coefficient that it holds for a while, without slip and states", example="0.3")
+    at_rest: str = formula("coefficient that it holds for a while, without slip and states", example="0.15")
     rates: Mapping[str, str] = formula(
         "rate [1/s] of each state by the name of that, 1 to 4 of them",
-        example={"z": "1000*(v - abs(v)*z/(0.24 + 0.06*exp(-(v/3)**2)))"},
+        example={"z": "1000*(v - abs(v)*z/(0.1 + 0.05*exp(-(v/2)**2)))"},
     )
     expression: str = formula(
         "coefficient over the slip `v` [rad/s], the states, `temperature` [K], `pressure` [Pa] and the numbers",
@@ -67,7 +67,9 @@ class DynamicFormula(FormulaLaw):
         numbers = {one.name for one in type(self).numbers}
         taken = [name for name in rates if not _is_state(name) or name in numbers]
         if taken:
-            return [(f"rates.{name}", "is no name of a state", "give it one that nothing else has") for name in taken]
+            return [
+                (f"rates.{name}", "is not a name for a state", "give it one that nothing else has") for name in taken
+            ]
         return super().problems()
 
     def faults(self, program: Program) -> Iterator[Found]:

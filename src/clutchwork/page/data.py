@@ -13,6 +13,7 @@ from clutchwork.declare.core import core
 from clutchwork.declare.layout import CAUSES, MODES, STATUS
 from clutchwork.page.copied import paths
 from clutchwork.page.knots import Dragged, chosen, refuse_controllers, roomy, with_tables
+from clutchwork.page.left_out import absent
 from clutchwork.page.levers import levers
 from clutchwork.page.live import live
 from clutchwork.page.live import plain as plain_live
@@ -20,6 +21,7 @@ from clutchwork.page.pairs import paired
 from clutchwork.page.signals import FELT, listed, loops, output_of, panels, plain_panels
 from clutchwork.page.slider import Bytes
 from clutchwork.page.sliders import names_of, sliders
+from clutchwork.page.static import PageError
 from clutchwork.results.channels import Channels, channels
 from clutchwork.results.forms import Slip
 
@@ -44,6 +46,9 @@ class PageRequest:
 def data_of(system: System, t_end: float, options: Options, wanted: PageRequest) -> dict[str, Any]:
     """The data of a page."""
     refuse_controllers(system)
+    lacking = list(absent(system))
+    if lacking:
+        raise PageError("; ".join(lacking))
     knots = chosen(system, wanted.drag, t_end)
     if wanted.drag is None:
         # a constant pressure can be either

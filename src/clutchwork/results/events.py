@@ -83,13 +83,26 @@ class Events(Sequence[Event]):
     def __hash__(self) -> int:
         return hash(self._events)
 
-    def of(self, element: str) -> Events:
-        """The events of one contact; UnknownName, a KeyError, with near names when there is none of that name."""
+    def of(self, element: str | None = None, *, before: str = "", after: str = "", cause: str = "") -> Events:
+        """The events of one contact, of one kind, or both: `run.events.of("c1", after="locked")` are its lock-ups.
+
+        Parameters: element, a name, "" for those that belong to no contact, None for all; before and after, "forward",
+        "backward", "locked" or "open"; cause, a word of the guide to results. UnknownName, a KeyError, with near names
+        where there is none of that name.
+        """
         known = [event.element for event in self] if self._contacts is None else self._contacts
-        if element not in known and element != "":
+        if element and element not in known:
             remedy = f"contacts are {listed(dict.fromkeys(known))}" if known else "the model has no contacts"
             raise UnknownName(f"no contact {quote(element)}{near(element, known, remedy)}")
-        return Events([event for event in self if event.element == element], self._contacts)
+        wanted = {"element": element} if element is not None else {}
+        for name, word in (("before", before), ("after", after), ("cause", cause)):
+            words = [cause for cause, _ in CAUSES.values()] if name == "cause" else list(MODES.values())
+            if word and word not in words:
+                rest = "" if near(word, words) else f"; {name} is one of {listed(words)}"
+                raise UnknownName(f"no {name} {quote(word)}{near(word, words)}{rest}")
+            wanted |= {name: word} if word else {}
+        chosen = [event for event in self if all(getattr(event, name) == word for name, word in wanted.items())]
+        return Events(chosen, self._contacts)
 
     def changes(self) -> Events:
         """Without entries that change no torque: an open contact whose slip passes zero."""

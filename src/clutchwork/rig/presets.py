@@ -15,9 +15,6 @@ from clutchwork.declare.schema import REGISTRY, Role, specs
 ELEMENTS = (
     (0.02, 0.03), (0.05, 0.05), (0.1, 0.07), (0.2, 0.1), (0.4, 0.15), (0.8, 0.2), (1.3, 0.15), (2.0, 0.15), (3.0, 0.1),
 )  # fmt: skip
-# the same as expressions: the curve, and how fast the bristles of LuGre bend
-STRIBECK = "kinetic + (static - kinetic)*exp(-(v/speed)**2)"
-BENDING = f"v - abs(v)*z/({STRIBECK})"
 
 
 @dataclass(frozen=True)
@@ -105,13 +102,6 @@ class Preset:
                 "elastic": self.elastic,
                 "speed": self.speed,
                 "viscous": self.inner,
-            },
-            "formula": {**curve, "expression": f"{STRIBECK} + viscous*v"},
-            "dynamic_formula": {
-                **bristle,
-                "expression": f"z + damping*({BENDING}) + viscous*v",
-                "rates": {"z": f"stiffness*({BENDING})"},
-                "at_rest": "static",
             },
         }
 

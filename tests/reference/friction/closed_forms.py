@@ -23,7 +23,7 @@ LAWS: dict[str, cw.Law] = {
     "stribeck lorentz": cw.Stribeck(**CURVE, shape="lorentz"),
     "stribeck power": cw.Stribeck(**CURVE, shape="power", exponent=0.8),
     "stribeck viscous": cw.Stribeck(static=KINETIC, kinetic=KINETIC, speed=SPEED, viscous=VISCOUS),
-    "formula": cw.Formula("mu + fall*exp(-v/fast)", mu=KINETIC, fall=FALL, fast=SPEED),
+    "formula": cw.Formula("kinetic + (static - kinetic)*exp(-v/speed)", **CURVE),
     "karnopp": cw.Karnopp(**CURVE, shape="tustin", band=BAND),
 }
 

@@ -1,6 +1,7 @@
 #pragma once
 #include <clutchwork/components/component.hpp>
 
+#include <cstddef>
 #include <cstdint>
 
 /// Formulas of friction laws: instructions over registers, evaluated for any scalar. docs/theory/friction-laws.md
@@ -40,14 +41,22 @@ CLUTCHWORK_INLINE S exp_behind(const S& x, const S& slip) {
   return exp(select(slip < S(0), smaller(x, S(20)), x));
 }
 
+/// A register that is read: what fits a register of the processor is there at once.
+template <class S>
+using Operand = std::conditional_t<std::is_floating_point_v<S>, S, const S&>;
+
 /// What an instruction computes of the registers `a` and `b`; `word` says which instruction, `r` are all registers.
 template <class S>
-CLUTCHWORK_HOT S computed(int word, const S& a, const S& b, const S* r) {
+CLUTCHWORK_HOT S computed(std::size_t word, Operand<S> a, Operand<S> b, const S* r) {
   switch (Operation(word % words_per_operation)) {
     case Operation::add:
       return a + b;
     case Operation::subtract:
       return a - b;
+    case Operation::add_product:
+      return r[word / words_per_operation] + a * b;
+    case Operation::subtract_product:
+      return r[word / words_per_operation] - a * b;
     case Operation::multiply:
       return a * b;
     case Operation::divide:
@@ -68,6 +77,10 @@ CLUTCHWORK_HOT S computed(int word, const S& a, const S& b, const S* r) {
       return exp(a);
     case Operation::exp_behind:
       return exp_behind(a, b);
+    case Operation::fade:
+      return exp(-a);
+    case Operation::fade_behind:
+      return exp_behind(-a, b);
     case Operation::log:
       return log(a);
     case Operation::tanh:
@@ -98,33 +111,45 @@ struct Program {
   const T* own;
   const G* code;
   const G* head;
-  int words;  ///< constants and instructions
+  const T& words;  ///< constants and instructions
 
   template <class P>
   CLUTCHWORK_HOT Program(const P& p, const G* points)
       : own(reinterpret_cast<const T*>(&p + 1)),
-        code(points + 3 * int(common(p.expression.first))),
-        head(points + 3 * int(common(p.at_rest.first))),
-        words(int(common(p.expression.count))) {}
+        code(points + 3 * place(p.expression.first)),
+        head(points + 3 * place(p.at_rest.first)),
+        words(p.expression.count) {}
 
-  CLUTCHWORK_HOT int word(int i) const { return int(common(head[i])); }
-  CLUTCHWORK_HOT int coefficient() const { return word(0); }
-  CLUTCHWORK_HOT int at_rest() const { return word(1); }
-  CLUTCHWORK_HOT int for_coefficient() const { return word(2); }
-  CLUTCHWORK_HOT int for_rates() const { return word(5); }
-  CLUTCHWORK_HOT int for_all() const { return words - word(4); }
+  CLUTCHWORK_HOT std::size_t coefficient() const { return place(head[0]); }
+  CLUTCHWORK_HOT std::size_t at_rest() const { return place(head[1]); }
+  CLUTCHWORK_HOT std::size_t for_coefficient() const { return place(head[2]); }
+  CLUTCHWORK_HOT std::size_t for_rates() const { return place(head[5]); }
+  CLUTCHWORK_HOT std::size_t for_all() const { return place(words) - place(head[4]); }
 
   /// Compute the first instructions; states that are not there are zero.
   template <class S>
-  [[gnu::noinline]] void run(const At<S>& at, Surroundings<S> in, int states, int instructions, S* r) const {
+  [[gnu::noinline]] void run(const At<S>& at, Surroundings<S> in, int states, std::size_t instructions, S* r) const {
     S* next = r;
     *next++ = at.rate, *next++ = in.temperature, *next++ = in.pressure;
     for (int i = 0; i < states; ++i) *next++ = at.state != nullptr ? at.state[i] : S(0);
-    for (int i = 0, n = word(3); i < n; ++i) *next++ = S(own[i]);
+    const T* number = own;
+    for (std::size_t n = place(head[3]); n > 0; one_by_one(n)) *next++ = S(*number++);
     const G* i = code;
-    for (const G* end = code + 3 * word(4); i != end; i += 3) *next++ = S(i[0]);
-    for (const G* end = i + 3 * instructions; i != end; i += 3, ++next)
-      *next = computed(int(common(i[0])), r[int(common(i[1]))], r[int(common(i[2]))], r);
+    for (std::size_t n = place(head[4]); n > 0; one_by_one(n), i += 3) *next++ = S(*i);
+    for (; instructions > 0; --instructions, i += 3)
+      *next++ = computed<S>(place(i[0]), r[place(i[1])], r[place(i[2])], r);
+  }
+
+ private:
+  /// A word as a place, of the width of addresses.
+  template <class N>
+  static CLUTCHWORK_HOT std::size_t place(const N& word) {
+    return std::size_t(std::int64_t(common(word)));
+  }
+  /// A loop over a few numbers goes on by one: prepared for many, it would take longer.
+  static CLUTCHWORK_HOT void one_by_one(std::size_t& left) {
+    asm("" : "+r"(left));
+    --left;
   }
 };
 

@@ -14,7 +14,7 @@ from clutchwork.laws.bases.expression import INPUTS, PRESSURE, SLIP, TEMPERATURE
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
 
-    from clutchwork.laws.bases.expression import Node
+    from clutchwork.laws.bases.expression import FormulaNode
     from clutchwork.laws.bases.program import Program
 
 # powers of kg, m, s, K and A; None: any
@@ -23,7 +23,7 @@ NAMES = ("kg", "m", "s", "K", "A")
 REMEDY = "give its numbers other units, or none, which fits any"
 NUMBER = (Fraction(0),) * len(NAMES)
 # results that take numbers without a unit, and give one
-PURE = {"exp", "exp_behind", "log", "tanh", "atan", "sin", "cos"}
+PURE = {"exp", "exp_behind", "fade", "fade_behind", "log", "tanh", "atan", "sin", "cos"}
 SAME = {"add": "adds", "subtract": "subtracts", "smaller": "compares", "larger": "compares", "pick": "takes"}
 SAME |= {"less": "compares", "at_most": "compares"}
 TRUTHS = {"less", "at_most"}
@@ -74,7 +74,7 @@ def _mistakes(program: Program, known: Mapping[str, Powers]) -> list[Mistake]:
     return found
 
 
-def _exponent(node: Node, begin: int, program: Program) -> float | None:
+def _exponent(node: FormulaNode, begin: int, program: Program) -> float | None:
     """The exponent of a power, where it is a constant."""
     place = node.of[1] - begin + len(program.constants) if node.operation == "power" else -1
     return program.constants[place] if 0 <= place < len(program.constants) else None
@@ -84,6 +84,9 @@ def _unit(operation: str, of: Sequence[Powers], exponent: float | None) -> tuple
     """The unit of a result, and what is wrong."""
     if operation in PURE or operation == "power":
         return _of_function(operation, of, exponent)
+    if operation.endswith("_product"):
+        product, _ = _unit("multiply", of[1:], None)
+        return _unit(operation.removesuffix("_product"), (of[0], product), None)
     if operation in SAME:
         first, second = of[-2:]
         made = second if first is None else first
@@ -105,9 +108,9 @@ def _of_function(operation: str, of: Sequence[Powers], exponent: float | None) -
     if operation == "power" and exponent is not None:
         share = Fraction(exponent).limit_denominator(1000)
         return of[0] and tuple(power * share for power in of[0]), ""
-    name = operation.removesuffix("_behind")
+    name = operation.removesuffix("_behind").replace("fade", "exp")
     # behind the zero of the slip exp looks at that too
-    taken = of[:1] if name != operation else of
+    taken = of[:1] if operation.endswith("_behind") else of
     wrong = next((f"takes {name} of {shown(one)}" for one in taken if one not in (None, NUMBER)), "")
     return NUMBER, wrong
 

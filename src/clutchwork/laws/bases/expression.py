@@ -47,7 +47,7 @@ PLAIN = {"exp": "exp", "log": "log", "sqrt": "root", "tanh": "tanh", "atan": "at
 PAIRS = {"min": "smaller", "max": "larger"}
 
 
-class Node(NamedTuple):
+class FormulaNode(NamedTuple):
     """One number of a graph: an operation on others, a name, or a constant."""
 
     operation: str  # "constant", "name", or one of program.OPERATIONS
@@ -75,20 +75,20 @@ class Source(NamedTuple):
         return f"{quote(self.words)} at character {self.place}"
 
 
-class Graph:
+class FormulaGraph:
     """The numbers that expressions are made of, each once: what two of them have in common is computed once."""
 
     def __init__(self, names: Collection[str], forward: bool) -> None:
         self.names = names  # that may be read
         self.forward = forward  # the slip has the direction of sliding: never below zero
-        self.nodes: list[Node] = []
+        self.nodes: list[FormulaNode] = []
         self.sources: list[Source] = []
         self.truths: set[int] = set()
         self.read: set[str] = set()
-        self._known: dict[Node, int] = {}
+        self._known: dict[FormulaNode, int] = {}
         self._moving: list[bool] = []
 
-    def add(self, node: Node, source: Source) -> int:
+    def add(self, node: FormulaNode, source: Source) -> int:
         """The number of a node, the same for the same one."""
         if node not in self._known:
             self._known[node] = len(self.nodes)
@@ -99,14 +99,32 @@ class Graph:
 
     def constant(self, value: float, source: Source) -> int:
         """A number as it is written."""
-        return self.add(Node("constant", value=float(value)), source)
+        return self.add(FormulaNode("constant", value=float(value)), source)
 
     def operation(self, name: str, of: Sequence[int], source: Source) -> int:
         """An operation; sums, differences and products of constants are constants, to the same bits."""
         parts = [self.nodes[i] for i in of]
         if name in FOLDED and all(part.operation == "constant" for part in parts):
             return self.constant(FOLDED[name](*(part.value for part in parts)), source)
-        return self.add(Node(name, tuple(of)), source)
+        return self._fused(name, list(of), parts, source)
+
+    def _fused(self, name: str, of: list[int], parts: Sequence[FormulaNode], source: Source) -> int:
+        """An operation as one word with another where that exists, to the same bits."""
+        last = parts[-1]
+        if name in ("multiply", "divide") and "negate" in (parts[0].operation, last.operation):
+            # the sign of a product or quotient is put behind it
+            place = int(parts[0].operation != "negate")
+            of[place] = parts[place].of[0]
+            return self.operation("negate", [self.operation(name, of, source)], source)
+        if name in ("add", "subtract") and last.operation == "negate":
+            return self.operation("subtract" if name == "add" else "add", [of[0], last.of[0]], source)
+        if name == "add" and parts[0].operation == "multiply" and last.operation != "multiply":
+            of, last = of[::-1], parts[0]
+        if name in ("add", "subtract") and last.operation == "multiply":
+            return self.add(FormulaNode(f"{name}_product", (of[0], *last.of)), source)
+        if name in ("exp", "exp_behind") and parts[0].operation == "negate":
+            return self.add(FormulaNode(name.replace("exp", "fade"), (parts[0].of[0], *of[1:])), source)
+        return self.add(FormulaNode(name, tuple(of)), source)
 
     def moves_with_slip(self, i: int) -> bool:
         """Whether a number follows from the slip."""
@@ -158,7 +176,7 @@ FOLDED: dict[str, Callable[..., float]] = {
 class Reader:
     """Reads the expression of one field into a graph; every mistake is collected."""
 
-    def __init__(self, graph: Graph, field: str, unread: Collection[str] = ()) -> None:
+    def __init__(self, graph: FormulaGraph, field: str, unread: Collection[str] = ()) -> None:
         self.graph = graph
         self.field = field
         self.unread = unread  # names that have no meaning here
@@ -236,7 +254,7 @@ class Reader:
 
     def _read_constant(self, tree: ast.Constant) -> int:
         if type(tree.value) not in (int, float):
-            return self._mistake(f"has {self.source(tree)}, which is no number", "write a number or a name")
+            return self._mistake(f"has {self.source(tree)}, which is not a number", "write a number or a name")
         try:
             number = float(tree.value)  # type: ignore[arg-type]
         except OverflowError:
@@ -255,7 +273,7 @@ class Reader:
             remedy = "" if meant else f"give it a value: {name}=0.3; known names: {', '.join(self.graph.names)}"
             return self._mistake(f"has the unknown name {source}{meant}", remedy)
         self.graph.read.add(name)
-        return self.graph.add(Node("name", name=name), source)
+        return self.graph.add(FormulaNode("name", name=name), source)
 
     def _read_unaryop(self, tree: ast.UnaryOp) -> int:
         source = self.source(tree)
@@ -344,6 +362,6 @@ class Reader:
             return graph.constant(1.0, source) if forward else graph.operation("sign", [of], source)
         if name == "exp" and graph.forward and graph.moves_with_slip(of):
             # what a trial step meets far behind the zero of the slip stays finite
-            slip = graph.add(Node("name", name=SLIP), source)
+            slip = graph.add(FormulaNode("name", name=SLIP), source)
             return graph.operation("exp_behind", [of, slip], source)
         return graph.operation(PLAIN[name], [of], source)

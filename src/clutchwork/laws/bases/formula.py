@@ -57,7 +57,7 @@ class FormulaLaw(Law):
     expression: str = formula(
         "coefficient over the slip `v` [rad/s], `temperature` [K], `pressure` [Pa] and the numbers of the law",
         kw_only=False,
-        example="0.24 + 0.06*exp(-v/3)",
+        example="0.1 + 0.05*exp(-v/2)",
     )
     at_rest: str | None = formula("coefficient at rest, in the same names but the slip", default=None)
     temperature: SignalLike | None = signal(
@@ -103,7 +103,7 @@ class FormulaLaw(Law):
         """What the core gets for a field that is written as an expression."""
         program, _ = self._program
         if program is None:
-            raise ValueError(f"{self.expression!r} is no formula")
+            raise ValueError(f"{self.expression!r} is not a formula")
         return {"expression": program.code, "at_rest": program.head, "rates": program.rate_words}[field]
 
     def problems(self) -> Found:
@@ -112,7 +112,8 @@ class FormulaLaw(Law):
         if program is None:
             return found
         units_given = {one.name: one.unit for one in type(self).numbers if one.unit != "1"}
-        wrong = mistakes_of_units(program, units_given)
+        # where no number has a unit, all are in those of SI
+        wrong = mistakes_of_units(program, units_given) if units_given else []
         found += [(one.field, one.message, one.remedy) for one in wrong]
         found += _unread(self, program)
         return found or next(self.faults(program), [])

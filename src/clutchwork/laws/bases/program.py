@@ -7,23 +7,24 @@ from functools import lru_cache
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 from clutchwork.base.plural import counted
-from clutchwork.laws.bases.expression import INPUTS, SLIP, Graph, Mistake, Reader
+from clutchwork.laws.bases.expression import INPUTS, SLIP, FormulaGraph, Mistake, Reader
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping, Sequence
 
-    from clutchwork.laws.bases.expression import Node, Source
+    from clutchwork.laws.bases.expression import FormulaNode, Source
 
 Points = tuple[tuple[float, float, float], ...]
 
 # what the core does, in the order of its numbers there: declared.gen.hpp has them from here
 OPERATIONS = (
-    "add", "subtract", "multiply", "divide", "negate", "size", "smaller", "larger", "power", "root", "exp",
-    "exp_behind", "log", "tanh", "atan", "sin", "cos", "sign", "less", "at_most", "pick",
+    "add", "subtract", "add_product", "subtract_product", "multiply", "divide", "negate", "size", "smaller", "larger",
+    "power", "root", "exp", "exp_behind", "fade", "fade_behind", "log", "tanh", "atan", "sin", "cos", "sign", "less",
+    "at_most", "pick",
 )  # fmt: skip
 # numbers that a formula may have at once: what it reads, its constants and its results
 MOST_REGISTERS = 64
-# an instruction says what it does, and for `pick` where its question stands, in one word
+# an instruction says what it does, and where the first of three numbers stands, in one word
 PER_WORD = 64
 # beyond these exp stays where it is behind the zero of the slip; a base of a power is not below, nor what has a root
 HIGHEST, LOWEST, LOWEST_ROOT = 20.0, 1e-12, 1e-24
@@ -35,7 +36,7 @@ class Program(NamedTuple):
     names: tuple[str, ...]  # of the numbers, in order
     states: tuple[str, ...]
     constants: tuple[float, ...]
-    nodes: tuple[Node, ...]  # instructions, their numbers being registers
+    nodes: tuple[FormulaNode, ...]  # instructions, their numbers being registers
     sources: tuple[Source, ...]
     coefficient: int  # registers of the results
     at_rest: int
@@ -49,9 +50,8 @@ class Program(NamedTuple):
         """Constants, then instructions: operation, first and second register."""
         words = [(value, 0.0, 0.0) for value in self.constants]
         for node in self.nodes:
-            asked = node.of[0] if node.operation == "pick" else 0
-            first, second = (*node.of[-2:], 0)[:2] if len(node.of) > 1 else (node.of[0], 0)
-            words.append((OPERATIONS.index(node.operation) + PER_WORD * asked, first, second))
+            of = {1: (0, *node.of, 0), 2: (0, *node.of), 3: node.of}[len(node.of)]
+            words.append((OPERATIONS.index(node.operation) + PER_WORD * of[0], of[1], of[2]))
         return tuple((float(a), float(b), float(c)) for a, b, c in words) or ((0.0, 0.0, 0.0),)
 
     @property
@@ -75,7 +75,7 @@ class Program(NamedTuple):
         return registers
 
     def first_fault(self, registers: Sequence[float]) -> Source | None:
-        """The first instruction whose result is no finite number; None where all are."""
+        """The first instruction whose result is not finite; None where all are."""
         begin = len(registers) - len(self.nodes)
         results = zip(self.nodes, self.sources, registers[begin:], strict=True)
         return next((source for _, source, value in results if not math.isfinite(value)), None)
@@ -88,7 +88,7 @@ def _computed(operation: str, of: Sequence[float]) -> float:
     except ZeroDivisionError:
         return math.nan if of[0] == 0.0 or math.isnan(of[0]) else math.copysign(math.inf, of[0])
     except (OverflowError, ValueError):
-        return math.inf if operation in ("exp", "exp_behind", "power") else math.nan
+        return math.inf if operation in ("exp", "exp_behind", "power", "fade", "fade_behind") else math.nan
 
 
 CALLS: dict[str, Callable[..., float]] = {
@@ -104,6 +104,10 @@ CALLS: dict[str, Callable[..., float]] = {
     "power": lambda a, b: math.nan if a < 0.0 else math.pow(max(a, LOWEST), b),
     "root": lambda a: math.nan if a < 0.0 else math.sqrt(a) if a > LOWEST_ROOT else 0.0,
     "exp": math.exp,
+    "add_product": lambda a, b, c: a + b * c,
+    "subtract_product": lambda a, b, c: a - b * c,
+    "fade": lambda a: math.exp(-a),
+    "fade_behind": lambda a, slip: math.exp(min(-a, HIGHEST) if slip < 0.0 else -a),
     "exp_behind": lambda a, slip: math.exp(min(a, HIGHEST) if slip < 0.0 else a),
     "log": math.log,
     "tanh": math.tanh,
@@ -131,7 +135,7 @@ class Texts(NamedTuple):
 def compiled(texts: Texts) -> tuple[Program | None, tuple[Mistake, ...]]:
     """The program of a law, None where there are mistakes, and all of these."""
     states = tuple(name for name, _ in texts.rates)
-    graph = Graph((*INPUTS, *states, *texts.names), texts.forward)
+    graph = FormulaGraph((*INPUTS, *states, *texts.names), texts.forward)
     written: list[tuple[str, Any, tuple[str, ...]]] = [("expression", texts.expression, ())]
     written += [(f"rates.{name}", text, ()) for name, text in texts.rates]
     written += [] if texts.at_rest is None else [("at_rest", texts.at_rest, (SLIP, *states))]
@@ -149,7 +153,7 @@ def compiled(texts: Texts) -> tuple[Program | None, tuple[Mistake, ...]]:
     return made, ()
 
 
-def _laid_out(graph: Graph, roots: Sequence[int], states: tuple[str, ...], texts: Texts) -> Program:
+def _laid_out(graph: FormulaGraph, roots: Sequence[int], states: tuple[str, ...], texts: Texts) -> Program:
     """Registers in the order in which they are computed: first what the coefficient needs, then the rest."""
     leaves = (*INPUTS, *states, *texts.names)
     register: dict[int, int] = {i: leaves.index(node.name) for i, node in enumerate(graph.nodes) if node.name}
@@ -179,7 +183,7 @@ def _laid_out(graph: Graph, roots: Sequence[int], states: tuple[str, ...], texts
     )
 
 
-def _collect(graph: Graph, root: int, needed: list[int], seen: set[int]) -> None:
+def _collect(graph: FormulaGraph, root: int, needed: list[int], seen: set[int]) -> None:
     """What a number follows from, before it."""
     if root in seen:
         return
