@@ -5,5 +5,5 @@
 
 /// Steps of one length, compiled apart.
 namespace clutchwork {
-template Status advance_fixed(Workspace<double>&, double, Sink&);
+template Status advance_fixed(Workspace<double>&, double, Sink&, bool);
 }  // namespace clutchwork

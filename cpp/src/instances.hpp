@@ -56,7 +56,7 @@ CLUTCHWORK_SIZED(extern, 3)
 CLUTCHWORK_SIZED(extern, 4)
 #endif
 #ifndef CLUTCHWORK_FIXED
-extern template Status advance_fixed(Workspace<double>&, double, Sink&);
+extern template Status advance_fixed(Workspace<double>&, double, Sink&, bool);
 #endif
 #ifndef CLUTCHWORK_INSTANCES
 CLUTCHWORK_SMALL_PHASES(extern)

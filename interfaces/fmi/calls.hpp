@@ -41,6 +41,31 @@ Answer each(std::size_t n, Each&& deed) {
   return answer;
 }
 
+// ------------------------------------------------------------------------- derivatives: alike in both versions
+
+template <class Deed>
+int derivatives(Instance* instance, const char* call, const References& of, const References& by, bool has_room,
+                Deed&& deed) {
+  return int(allowed(instance, evaluated, call, [&](Instance& it) {
+    if (of.n == 0) return Answer::ok;
+    if (!has_room || of.at == nullptr || by.at == nullptr) return it.refuse(std::string(call) + " has no values");
+    return deed(it);
+  }));
+}
+
+inline int output_rates(Instance* instance, const char* call, const std::uint32_t* references, std::size_t n,
+                        const std::int32_t* orders, double* rates) {
+  return int(allowed(instance, evaluated, call, [&](Instance& it) {
+    if (n == 0) return Answer::ok;
+    if (it.exchanges()) return it.refuse(std::string(call) + " is for instances of co-simulation");
+    if (references == nullptr || orders == nullptr || rates == nullptr)
+      return it.refuse(std::string(call) + " has no values");
+    for (std::size_t i = 0; i < n; ++i)
+      if (orders[i] != 1) return it.refuse("derivatives of outputs are those of order 1, not " + number(orders[i]));
+    return it.output_rates({references, n}, rates);
+  }));
+}
+
 // ------------------------------------------------------------------------------ states: alike in both versions
 
 inline int get_state(Instance* instance, const char* call, void** state) {

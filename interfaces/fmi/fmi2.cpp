@@ -182,8 +182,9 @@ FMI_EXPORT int fmi2SetRealInputDerivatives(void* c, const Reference* references,
   }));
 }
 
-FMI_EXPORT int fmi2GetRealOutputDerivatives(void* c, const Reference*, std::size_t n, const int*, double*) {
-  return none(c, "fmi2GetRealOutputDerivatives", n);
+FMI_EXPORT int fmi2GetRealOutputDerivatives(void* c, const Reference* references, std::size_t n, const int* orders,
+                                            double* rates) {
+  return output_rates(of(c), "fmi2GetRealOutputDerivatives", references, n, orders, rates);
 }
 
 FMI_EXPORT int fmi2DoStep(void* c, double from, double size, int) {
@@ -238,9 +239,11 @@ FMI_EXPORT int fmi2DeSerializeFMUstate(void* c, const char bytes[], std::size_t 
   return deserialize_state(of(c), "fmi2DeSerializeFMUstate", bytes, size, state);
 }
 
-FMI_EXPORT int fmi2GetDirectionalDerivative(void* c, const Reference*, std::size_t, const Reference*, std::size_t,
-                                            const double*, double*) {
-  return none(c, "fmi2GetDirectionalDerivative", 1);
+FMI_EXPORT int fmi2GetDirectionalDerivative(void* c, const Reference* unknowns, std::size_t n, const Reference* knowns,
+                                            std::size_t n_knowns, const double* seed, double* found) {
+  return derivatives(of(c), "fmi2GetDirectionalDerivative", {unknowns, n}, {knowns, n_knowns},
+                     seed != nullptr && found != nullptr,
+                     [&](Instance& it) { return it.derivatives({unknowns, n}, {knowns, n_knowns}, seed, found); });
 }
 
 // ----------------------------------------------------------------------------------------------------- model exchange

@@ -41,7 +41,6 @@ int none(void* c, const char* call, std::size_t n, const char* why) {
 constexpr const char* no_type = "no variable of this FMU has that type";
 constexpr const char* no_schedule = "this FMU has no scheduled execution";
 constexpr const char* no_clocks = "this FMU has no clocks";
-constexpr const char* no_derivatives = "this FMU gives no derivatives";
 
 template <class X>
 int get(void* c, const char* call, bool whole, const Reference* references, std::size_t n, X* values,
@@ -293,17 +292,23 @@ FMI_EXPORT int fmi3GetVariableDependencies(void* c, Reference, std::size_t*, Ref
                                            std::size_t) {
   return none(c, "fmi3GetVariableDependencies", 1, "see the model description");
 }
-FMI_EXPORT int fmi3GetDirectionalDerivative(void* c, const Reference*, std::size_t, const Reference*, std::size_t,
-                                            const double*, std::size_t, double*, std::size_t) {
-  return none(c, "fmi3GetDirectionalDerivative", 1, no_derivatives);
+FMI_EXPORT int fmi3GetDirectionalDerivative(void* c, const Reference* unknowns, std::size_t n, const Reference* knowns,
+                                            std::size_t n_knowns, const double* seed, std::size_t seeds, double* found,
+                                            std::size_t room) {
+  const bool has_room = seed != nullptr && found != nullptr && seeds == n_knowns && room >= n;
+  return derivatives(of(c), "fmi3GetDirectionalDerivative", {unknowns, n}, {knowns, n_knowns}, has_room,
+                     [&](Instance& it) { return it.derivatives({unknowns, n}, {knowns, n_knowns}, seed, found); });
 }
-FMI_EXPORT int fmi3GetAdjointDerivative(void* c, const Reference*, std::size_t, const Reference*, std::size_t,
-                                        const double*, std::size_t, double*, std::size_t) {
-  return none(c, "fmi3GetAdjointDerivative", 1, no_derivatives);
+FMI_EXPORT int fmi3GetAdjointDerivative(void* c, const Reference* unknowns, std::size_t n, const Reference* knowns,
+                                        std::size_t n_knowns, const double* seed, std::size_t seeds, double* found,
+                                        std::size_t room) {
+  const bool has_room = seed != nullptr && found != nullptr && seeds == n && room >= n_knowns;
+  return derivatives(of(c), "fmi3GetAdjointDerivative", {unknowns, n}, {knowns, n_knowns}, has_room,
+                     [&](Instance& it) { return it.adjoint({unknowns, n}, {knowns, n_knowns}, seed, found); });
 }
-FMI_EXPORT int fmi3GetOutputDerivatives(void* c, const Reference*, std::size_t n, const std::int32_t*, double*,
-                                        std::size_t) {
-  return none(c, "fmi3GetOutputDerivatives", n, no_derivatives);
+FMI_EXPORT int fmi3GetOutputDerivatives(void* c, const Reference* references, std::size_t n, const std::int32_t* orders,
+                                        double* rates, std::size_t room) {
+  return output_rates(of(c), "fmi3GetOutputDerivatives", references, n, orders, room < n ? nullptr : rates);
 }
 
 // -------------------------------------------------------------------------------------------------------------- modes

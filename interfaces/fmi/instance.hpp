@@ -22,6 +22,12 @@ struct Listener {
   void (*say)(void* who, Answer answer, const char* category, const char* text) = nullptr;
 };
 
+/// Derivatives that an input may have.
+inline constexpr int orders = 3;
+
+/// A number as messages quote it.
+std::string number(double x);
+
 /// Where an instance is in its life.
 enum class Stage { instantiated, initialization, step, event, terminated, failed };
 
@@ -38,10 +44,26 @@ struct State {
   std::vector<double> loaded;      ///< values with which the run was loaded
   std::vector<double> on_line;     ///< 1 for an input that the core has as a line, else 0
   std::vector<double> slopes;      ///< three of each variable: derivatives of an input over the coming step
+  std::vector<double> past;        ///< and those at the end of the last one
   double time = 0;                 ///< [s] model exchange: of the importer
   bool is_anew = false;            ///< inputs or parameters were set in event mode
   std::vector<double> x;           ///< the state of the core, of which continuous states are some numbers
   std::vector<unsigned char> run;  ///< a copy of the run, where it is loaded
+};
+
+/// Where a motion is looked at: time [s], the state of the core, values and derivatives of variables.
+struct Point {
+  double time = 0;
+  std::vector<double> x, value, slopes;
+};
+
+/// A way through points, per unit of which something changes.
+using Direction = Point;
+
+/// Variables by value reference.
+struct References {
+  const std::uint32_t* at;
+  std::size_t n;
 };
 
 /// What a step did.
@@ -94,6 +116,11 @@ class Instance {
   Answer nominals(double* sizes, std::size_t n) const;
   Answer decide(bool* changed);
 
+  // derivatives, the modes of all contacts held: by seeds of knowns, or with seeds of unknowns
+  Answer derivatives(const References& of, const References& by, const double* seed, double* found);
+  Answer adjoint(const References& of, const References& by, const double* seed, double* found);
+  Answer output_rates(const References& of, double* rates);
+
   // states
   State* state();
   Answer go_to(const State& state);
@@ -111,10 +138,22 @@ class Instance {
   bool is_possible(const State& state) const;
   bool load();
   bool put(const std::vector<double>& values);
+  void follow(const std::vector<double>& values);
   bool is_line(std::size_t input) const;
   bool look();
   bool place();
+  bool stand(double time, const std::vector<double>& x, const std::vector<double>& value,
+             const std::vector<double>& slopes);
+  double computed(const Variable& one) const;
   bool begin();
+  Direction no_direction() const;
+  Answer turn(std::uint32_t known, double seed, Direction& into) const;
+  Answer check_results(const References& of);
+  bool find(Point& here);
+  bool follow_motion(Point& here, Direction& along);
+  double length(const Direction& along, const Point& here) const;
+  int way_from_zero(const Direction& along, const Point& here, double by) const;
+  Answer change(Direction along, bool is_motion, const References& of, double* rates);
   bool has_room(const double* numbers, std::size_t n, std::size_t wanted, const char* what) const;
   void give_inputs();
   void follow_slopes(double seconds);
@@ -127,6 +166,7 @@ class Instance {
   bool is_logged_[categories] = {true, true, false};
   Model model_;
   State now_;
+  std::vector<Form> forms_;  ///< with the present parameters; empty: those of the model
   std::vector<unsigned char> system_, memory_, before_;
   std::vector<double> row_, events_, rates_, margins_;
   cw_run* run_ = nullptr;

@@ -11,7 +11,7 @@ namespace clutchwork::fmi {
 
 namespace {
 
-constexpr char magic[8] = {'C', 'W', 'F', 'M', 'U', '0', '0', '3'};
+constexpr char magic[8] = {'C', 'W', 'F', 'M', 'U', '0', '0', '4'};
 constexpr std::int64_t many = std::int64_t(1) << 40;
 
 /// A checksum of words.
@@ -57,11 +57,17 @@ Variable variable(Reader& from, std::int64_t words) {
   made.kind = Kind(from.integer(0, kinds - 1));
   made.name = from.text(), made.bounds = from.text();
   made.start = from.number(), made.least = from.number(), made.most = from.number();
+  made.nominal = from.number();
   made.of = from.integer(-1, many), made.order = from.integer(0, 3);
   made.inputs.resize(std::size_t(from.count(8)));
   for (std::int64_t& input : made.inputs) input = from.integer(0, many);
   made.words = places(from, words);
   made.params = places(from, words);
+  made.forms.resize(std::size_t(from.count(48)));
+  for (Follows& one : made.forms) {
+    one.form = from.integer(0, many), one.term = from.integer(0, many), one.side = from.integer(0, 1);
+    one.share = from.integer(-1, many), one.is_reciprocal = from.integer(0, 1) != 0, one.slope = from.number();
+  }
   return made;
 }
 
@@ -71,11 +77,22 @@ std::vector<std::string> texts(Reader& from) {
   return made;
 }
 
+/// Whether a number of an output is there.
+bool is_there(const Follows& one, const std::vector<Form>& forms) {
+  if (one.form >= std::int64_t(forms.size())) return false;
+  const auto& terms = forms[std::size_t(one.form)].terms;
+  if (one.term >= std::int64_t(terms.size())) return false;
+  const Term& term = terms[std::size_t(one.term)];
+  return one.share < std::int64_t((one.side == 0 ? term.one : term.other).parts.size());
+}
+
 /// Whether what variables refer to is there.
 bool is_joined(const Model& model) {
   const auto variables = std::int64_t(model.variables.size()), forms = std::int64_t(model.forms.size());
   const auto states = std::int64_t(model.states.size());
   for (const Variable& one : model.variables) {
+    for (const Follows& number : one.forms)
+      if (!is_there(number, model.forms)) return false;
     if (one.kind == Kind::slope && (one.of < 0 || one.of >= variables || one.order < 1)) return false;
     if (one.kind == Kind::slope && model.variables[std::size_t(one.of)].kind != Kind::input) return false;
     if ((one.kind == Kind::signal || one.kind == Kind::mode) && (one.of < 0 || one.of >= forms)) return false;
@@ -138,7 +155,7 @@ std::string Model::read(const std::vector<unsigned char>& bytes) {
   t_start = from.number();
   options.resize(std::size_t(from.count(16)));
   for (Option& option : options) option.name = from.text(), option.value = from.number();
-  variables.resize(std::size_t(from.count(80)));
+  variables.resize(std::size_t(from.count(96)));
   for (Variable& one : variables) one = variable(from, std::int64_t(system.size()) / 8);
   forms.resize(std::size_t(from.count(8)));
   for (Form& one : forms) one = form(from, row_size);
@@ -153,8 +170,9 @@ std::string Model::read(const std::vector<unsigned char>& bytes) {
   for (Sentence& one : statuses) one.message = from.text(), one.remedy = from.text();
   causes = texts(from), modes = texts(from);
   exchanges = from.integer(0, 1) != 0;
-  states.resize(std::size_t(from.count(16)));
-  for (ContinuousState& one : states) one.number = from.integer(0, many), one.nominal = from.number();
+  states.resize(std::size_t(from.count(24)));
+  for (ContinuousState& one : states)
+    one.number = from.integer(0, many), one.nominal = from.number(), one.variable = from.integer(0, many);
   const bool fits = cw_size(system.data(), std::int64_t(system.size())) > 0 && std::int64_t(row.size()) == row_size;
   return from.is_at_end() && fits && is_joined(*this) ? "" : damaged;
 }

@@ -15,17 +15,32 @@ struct Place {
   double slope;  ///< not a number: it is the value itself
 };
 
+/// A number of the form of an output that follows a parameter, or its reciprocal.
+struct Follows {
+  std::int64_t form, term, side, share;  ///< share -1: the offset
+  bool is_reciprocal;
+  double slope;
+
+  double change(double start, double value) const {
+    return slope * (is_reciprocal ? 1 / value - 1 / start : value - start);
+  }
+};
+
 struct Variable {
   Kind kind;
   std::string name;
   std::string bounds;  ///< in words
-  double start, least, most;
+  double start, least, most, nominal;
   std::int64_t of;                   ///< a slope: its input; a signal or mode: its form; a rate: its continuous state;
                                      ///< a margin: its number
   std::int64_t order;                ///< of a slope
   std::vector<std::int64_t> inputs;  ///< numbers in the core
   std::vector<Place> words;          ///< before a run
   std::vector<Place> params;         ///< during one
+  std::vector<Follows> forms;        ///< what outputs are computed from
+
+  bool is_parameter() const { return kind == Kind::tunable || kind == Kind::fixed; }
+  bool is_given() const { return kind == Kind::input || kind == Kind::slope || is_parameter(); }
 };
 
 /// offset + sum of factor times number of a row; in this order.
@@ -72,6 +87,7 @@ struct Part {
 struct ContinuousState {
   std::int64_t number;
   double nominal;
+  std::int64_t variable;  ///< value reference
 };
 
 struct Model {

@@ -249,3 +249,23 @@ def test_steps_of_one_length_are_those_of_a_simulator(tmp_path: Any, version: st
             sim.advance_to((k + 1) * 1e-3)
             run.step(k * 1e-3, (k + 1) * 1e-3 - k * 1e-3)
         assert run.get(SPEEDS) == [sim[name] for name in SPEEDS]
+
+
+def test_a_step_of_one_length_ends_an_early_return(tmp_path: Any) -> None:
+    """A master that wants events gets control at the end of the step in which a contact has changed."""
+    how = {"method": "fixed", "step": 1e-3}
+    path = cw.Driveline.load(SIX_SPEED).to_fmu(tmp_path / "fixed.fmu", version="3.0", picture=False, **how)
+    fmu = Fmu(path, tmp_path / "unpacked")
+    want = cw.Driveline.load(SIX_SPEED).simulate(3.0, **how)
+    run = fmu.instance(early_return=True)
+    run.begin({})
+    time, stops = 0.0, list[float]()
+    while time < 3.0:
+        _, _, early, time = run.step(time, 3.0 - time)
+        stops += [time] if early else []
+    # in one step there may be several
+    assert np.unique(np.ceil(np.array([event.time for event in want.events]) / 1e-3 - 1e-9)) == pytest.approx(
+        np.array(stops) / 1e-3, abs=1e-6
+    )
+    assert run.get(["w8.speed"])[0] == want["w8.speed"][-1]
+    run.free()

@@ -9,6 +9,7 @@ from clutchwork.declare.layout import (
     COUNTS,
     EVENT,
     FEW_SPEEDS,
+    MOST_FIXED_SPEEDS,
     FIELDS,
     METHODS,
     MODES,
@@ -81,6 +82,8 @@ def system() -> Iterator[str]:
     """The System struct."""
     yield "/// Up to so many speeds nothing is left out of a matrix."
     yield f"inline constexpr int few_speeds = {FEW_SPEEDS};"
+    yield "/// Up to so many, steps of one length are taken."
+    yield f"inline constexpr int most_fixed_speeds = {MOST_FIXED_SPEEDS};"
     yield "/// Frozen model: sizes and arrays inside bytes that the caller keeps."
     yield "/// Its numbers are doubles, or carry tangents."
     yield "struct SystemCounts {"

@@ -74,8 +74,9 @@ int cw_set_poll(cw_run* run, int (*poll)(void* context), void* context);
  */
 int cw_advance(cw_run* run, double t_end, double* times, double* rows, int64_t n, int steps, int64_t* filled);
 
-/* As cw_advance without rows, but it returns right after the first instant at which a contact changes its state: `done`
-   at cw_time, with events that wait. Take the events that wait before. */
+/* As cw_advance without rows, but it returns right after the first instant at which a contact changes its state, with
+   steps of one length at the end of that step: `done` at cw_time, with events that wait. Take the events that wait
+   before. */
 int cw_advance_to_event(cw_run* run, double t_end);
 
 /* The first instant [s] after the present time at which a signal of the system has a knot; INFINITY: none, or a null

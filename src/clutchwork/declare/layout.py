@@ -9,6 +9,8 @@ from functools import cache
 
 # up to so many speeds nothing is left out of a matrix
 FEW_SPEEDS = 12
+# up to so many, steps of one length are taken: their matrices are whole
+MOST_FIXED_SPEEDS = 64
 
 # sizes of a system, in the order in which they stand in the header; the rooms are what a run needs at most for its own
 # matrices without their zeros, whatever its contacts do, and 0 for few speeds: docs/theory/reduction.md
@@ -213,9 +215,8 @@ REFUSALS = {
     2: ("stop", "it is a stop with impacts"),
     3: ("load_dependent", "its friction follows its own load"),
     4: ("chatters", "its law jumps with the sign of the slip and never sticks"),
-    5: ("many_speeds", f"the model has more than {FEW_SPEEDS} independent speeds"),
-    6: ("massless", "a shaft has no inertia"),
-    7: ("bristles", "its bristles or teeth move within any step"),
+    5: ("many_speeds", f"the model has more than {MOST_FIXED_SPEEDS} independent speeds"),
+    6: ("bristles", "its bristles or teeth move within any step"),
 }
 
 # what a run counts, in order: (name, meaning)

@@ -118,6 +118,11 @@ def _units(made: Interface) -> list[str]:
     return [one.unit for one in made.variables if one.kind is not VariableKind.MODE]
 
 
+def _has_rates(made: Interface) -> bool:
+    """Whether outputs have derivatives in co-simulation: a step of fixed length has a mean rate alone."""
+    return made.options.method != "fixed"
+
+
 def _outputs(made: Interface) -> list[tuple[int, FmuVariable]]:
     return [(number, one) for number, one in made.of(VariableKind.SIGNAL, VariableKind.MODE) if not one.hidden]
 
@@ -135,11 +140,13 @@ STATES_TWO = {"canGetAndSetFMUstate": "true", "canSerializeFMUstate": "true"}
 
 def _add_two(root: Element, made: Interface, identifier: str) -> None:
     common = {"modelIdentifier": identifier, "canNotUseMemoryManagementFunctions": "true"} | STATES_TWO
+    derives = {"providesDirectionalDerivative": "true"}
     if MODEL_EXCHANGE in made.kinds:
-        SubElement(root, "ModelExchange", common | {"completedIntegratorStepNotNeeded": "true"})
+        SubElement(root, "ModelExchange", common | derives | {"completedIntegratorStepNotNeeded": "true"})
     if CO_SIMULATION in made.kinds:
         steps = {"canHandleVariableCommunicationStepSize": "true", "canInterpolateInputs": "true"}
-        SubElement(root, "CoSimulation", common | steps | {"maxOutputDerivativeOrder": "0"})
+        rates = {"maxOutputDerivativeOrder": "1"} | derives if _has_rates(made) else {"maxOutputDerivativeOrder": "0"}
+        SubElement(root, "CoSimulation", common | steps | rates)
     add_units(root, _units(made))
     _categories(root)
     _experiment(root, made)
@@ -168,12 +175,13 @@ def _add_two(root: Element, made: Interface, identifier: str) -> None:
 # ------------------------------------------------------------------------------------------------------------- FMI 3.0
 
 STATES_THREE = {"canGetAndSetFMUState": "true", "canSerializeFMUState": "true"}
+DERIVES_THREE = {"providesDirectionalDerivatives": "true", "providesAdjointDerivatives": "true"}
 
 
 def _add_three(root: Element, made: Interface, identifier: str) -> None:
     common = {"modelIdentifier": identifier} | STATES_THREE
     if MODEL_EXCHANGE in made.kinds:
-        SubElement(root, "ModelExchange", common | {"needsCompletedIntegratorStep": "false"})
+        SubElement(root, "ModelExchange", common | DERIVES_THREE | {"needsCompletedIntegratorStep": "false"})
     if CO_SIMULATION in made.kinds:
         _add_steps(root, made, common)
     add_units(root, _units(made))
@@ -206,4 +214,5 @@ def _add_steps(root: Element, made: Interface, common: dict[str, str]) -> None:
     )
     fixed = made.options.method == "fixed" and made.options.step
     size = {"fixedInternalStepSize": repr(float(made.options.step))} if fixed else {}
-    SubElement(root, "CoSimulation", common | able | size)
+    rates = DERIVES_THREE | {"maxOutputDerivativeOrder": "1"} if _has_rates(made) else {}
+    SubElement(root, "CoSimulation", common | able | size | rates)

@@ -18,7 +18,7 @@ from clutchwork.results.rows import numbers
 INTEGRALS = ("angle", "element_work", "contact_work", "prescribed_work", "supply_energy", "meter_energy")
 ABOUT_RATE = "time derivative of the state"
 ABOUT_MARGIN = "above zero while nothing needs a decision"
-# sizes of states by their units, where nothing else is known
+# sizes of states and inputs by their units, where nothing else is known
 NOMINAL = {"Pa": 1e5, "K": 100.0}
 
 
@@ -47,7 +47,7 @@ def exchange(system: System, known: Channels, variables: Sequence[FmuVariable]) 
     states = list[ContinuousState]()
     for state, ((number, _), reference) in enumerate(zip(placed, references, strict=True)):
         one = made[reference]
-        size = _fastest(system) if one.unit in ("rad/s", "m/s") else NOMINAL.get(one.unit, 1.0)
+        size = nominal(system, one.unit)
         made[reference] = replace(one, state=state, nominal=size)
         states.append(ContinuousState(number, size, reference, len(made)))
         unit = "1/s" if one.unit == "1" else f"{one.unit}/s"
@@ -126,6 +126,8 @@ def _margins(system: System) -> Iterator[str]:
         yield f"{name}.margin"
 
 
-def _fastest(system: System) -> float:
-    """Size of the speeds where a run begins."""
-    return max(1.0, *(abs(float(speed)) for speed in system.initial_speed))
+def nominal(system: System, unit: str) -> float:
+    """Size of a quantity: that of the speeds where a run begins, else the one of its unit."""
+    if unit in ("rad/s", "m/s"):
+        return max(1.0, *(abs(float(speed)) for speed in system.initial_speed))
+    return NOMINAL.get(unit, 1.0)

@@ -99,7 +99,7 @@ def _entries(made: Interface, name: str, version: str, picture: bool) -> dict[st
         "documentation/licenses/license.txt": licence(),
     }
     for library in libraries():
-        entries[f"binaries/{library.folders[version]}/{identifier}{library.ending}"] = library.path.read_bytes()
+        entries[f"binaries/{library.folders[version]}/{identifier}{library.ending}"] = library.content()
     if picture and made.system.source is not None:
         entries[PICTURES[version]] = _picture(made.system)
     return entries

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import warnings
 from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import replace
 
 import numpy as np
 
@@ -13,11 +14,11 @@ from clutchwork.base.classes import dataclass
 from clutchwork.base.errors import ModelError, ModelWarning, Problem, UseError
 from clutchwork.declare.layout import ROW
 from clutchwork.declare.options import Options
-from clutchwork.fmu.exchange import ContinuousState, exchange, exchange_faults
-from clutchwork.fmu.following import following
+from clutchwork.fmu.exchange import ContinuousState, exchange, exchange_faults, nominal
+from clutchwork.fmu.following import Following, following
 from clutchwork.fmu.names import input_faults, is_text, matching, output_faults, parameter_faults, shown
 from clutchwork.fmu.parameters import parameters
-from clutchwork.fmu.variables import FmuVariable, LeftOut, VariableKind
+from clutchwork.fmu.variables import FmuVariable, LeftOut, NumberThatFollows, VariableKind
 from clutchwork.results.channels import Channels, channels
 from clutchwork.results.forms import Mode
 from clutchwork.signals.bases.waveform import value as value_at
@@ -36,7 +37,7 @@ OF_STATES = (
 )
 CO_SIMULATION, MODEL_EXCHANGE = "co-simulation", "model exchange"
 KINDS = (CO_SIMULATION, MODEL_EXCHANGE)
-FOLLOWS = "the output {} is computed from it too: choose outputs without that one"
+FOLLOWS = "the output {} is computed from it too, along no straight line: choose outputs without that one"
 MODE = "mode of the contact: -1 slips backward, 0 locked, 1 slips forward, 2 open"
 
 
@@ -87,14 +88,14 @@ def interface(
     wanted = [name for name in results if name not in taken] if outputs is None else matching(outputs, results)
     kept = list(numbers) if chosen is None else matching(chosen, numbers)
     asked_for = [numbers[name] for name in kept if name in numbers]
-    moved = following(ready, options, asked_for, [name for name in wanted if name in results])
+    moves = following(ready, options, asked_for, [name for name in wanted if name in results])
     if chosen is not None and outputs is None:
         # parameters that were asked for come before outputs that were not
-        while moved:
-            wanted = [name for name in wanted if name not in moved.values()]
-            moved = following(ready, options, asked_for, wanted)
-    left += tuple(LeftOut(name, FOLLOWS.format(output)) for name, output in moved.items())
-    numbers = {name: one for name, one in numbers.items() if name not in moved}
+        while moves.left_out:
+            wanted = [name for name in wanted if name not in moves.left_out.values()]
+            moves = following(ready, options, asked_for, wanted)
+    left += tuple(LeftOut(name, FOLLOWS.format(output)) for name, output in moves.left_out.items())
+    numbers = {name: _moving(one, moves, wanted) for name, one in numbers.items() if name not in moves.left_out}
     kept = kept if chosen is not None else [name for name in kept if name in numbers]
     faults = [
         *input_faults(asked, settable, known, numbers),
@@ -102,7 +103,7 @@ def interface(
         *parameter_faults(kept, numbers, left, settable),
     ]
     first = [FmuVariable("time", VariableKind.TIME, "s", options.t_start)]
-    first += [_input(known, name, settable[name], start) for name, start in held.items()]
+    first += [_input(ready, known, name, settable[name], start) for name, start in held.items()]
     reasons = tuple(exchange_faults(ready, first, version))
     if kinds is not None and MODEL_EXCHANGE in kinds:
         faults += [f"kinds: not for model exchange: {why}" for why in reasons]
@@ -117,6 +118,15 @@ def interface(
         return Interface(ready, options, t_end, variables, left, taken_kinds, not_exchanged=reasons)
     whole = exchange(ready, known, variables)
     return Interface(ready, options, t_end, whole.variables, left, taken_kinds, whole.states)
+
+
+def _moving(one: FmuVariable, moves: Following, outputs: Sequence[str]) -> FmuVariable:
+    """A parameter with the numbers of outputs that follow it."""
+    found = [
+        NumberThatFollows(outputs.index(output), at.term, at.side, at.share, *line)
+        for (output, at), line in moves.lines.get(one.name, {}).items()
+    ]
+    return replace(one, forms=tuple(found)) if found else one
 
 
 def _pinned(system: System) -> System:
@@ -149,9 +159,10 @@ def _with_sampled(system: System, names: Sequence[str]) -> list[str]:
     return list(dict.fromkeys([*names, *owners]))
 
 
-def _input(known: Channels, name: str, found: Settable, start: float) -> FmuVariable:
-    called, spec = shown(known, name), found.spec
-    return FmuVariable(called, VariableKind.INPUT, found.unit, start, spec.ends, spec.doc, inputs=found.numbers)
+def _input(system: System, known: Channels, name: str, found: Settable, start: float) -> FmuVariable:
+    called, spec, size = shown(known, name), found.spec, nominal(system, found.unit)
+    made = FmuVariable(called, VariableKind.INPUT, found.unit, start, spec.ends, spec.doc)
+    return replace(made, inputs=found.numbers, nominal=size)
 
 
 def _slope(number: int, of: FmuVariable) -> FmuVariable:

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import gzip
+from collections.abc import Iterator
 from pathlib import Path
 from typing import NamedTuple
 
@@ -9,6 +11,9 @@ from clutchwork.declare.core import core
 
 # what the build installs beside the compiled core, CMakeLists.txt
 INSTALLED = ("native", "fmu")
+# those of other platforms, `make fmu-libraries`: packed, so that no tool takes them for libraries of this one
+OTHERS = Path(__file__).parent / "static"
+PACKED = ".gz"
 SYSTEMS = {"linux": ("linux", ".so"), "windows": ("win", ".dll"), "darwin": ("darwin", ".dylib")}
 PROCESSORS = {"x86_64": "64", "amd64": "64", "aarch64": "aarch64", "arm64": "aarch64"}
 
@@ -20,22 +25,48 @@ class Library(NamedTuple):
     ending: str
     folders: dict[str, str]  # by version
 
+    def content(self) -> bytes:
+        """Its bytes."""
+        found = self.path.read_bytes()
+        return gzip.decompress(found) if self.path.suffix == PACKED else found
+
 
 def folder() -> Path:
-    """Where they are."""
+    """Where that of this platform is."""
     return Path(core().__file__).parent.joinpath(*INSTALLED)
 
 
 def libraries() -> list[Library]:
-    """All that were built; FileNotFoundError where there is none."""
-    found = [made for path in sorted(folder().glob("*-*.*")) if (made := _library(path)) is not None]
-    if not found:
+    """All that were built, of each platform one; FileNotFoundError where there is none."""
+    found = {one.folders["3.0"]: one for one in (*_others(), *_libraries(folder()))}
+    if not any(one.path.suffix != PACKED for one in found.values()):
         raise FileNotFoundError(f"{folder()} holds no library of FMUs: install clutchwork again")
-    return found
+    return [found[platform] for platform in sorted(found)]
 
 
-def _library(path: Path) -> Library | None:
-    processor, _, system = path.stem.partition("-")
+def _libraries(where: Path) -> Iterator[Library]:
+    for path in sorted(where.glob("*-*.*")):
+        made = _library(path, path.stem)
+        if made is not None:
+            yield made
+
+
+def _others() -> Iterator[Library]:
+    """Those of other platforms that read what this core writes: `x86_64-windows.0123456789abcdef.dll.gz`."""
+    for path in sorted(OTHERS.glob(f"*-*.*.*{PACKED}")):
+        platform, schema = path.name.split(".")[:2]
+        made = _library(path, platform)
+        if made is not None and schema == schema_of(core().schema_hash()):
+            yield made
+
+
+def schema_of(number: int) -> str:
+    """A schema in the name of a file."""
+    return f"{number & (2**64 - 1):016x}"
+
+
+def _library(path: Path, platform: str) -> Library | None:
+    processor, _, system = platform.partition("-")
     if system not in SYSTEMS or processor not in PROCESSORS:
         return None
     short, ending = SYSTEMS[system]

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import struct
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Callable, Sequence
 from hashlib import sha256
 from typing import Any, TypeVar
 
@@ -14,14 +14,15 @@ from clutchwork.declare.core import core
 from clutchwork.declare.layout import CAUSES, MODES, STATUS
 from clutchwork.declare.schema import Role
 from clutchwork.fmu.interface import MODEL_EXCHANGE, Interface
-from clutchwork.fmu.variables import FmuVariable, Place, VariableKind
+from clutchwork.fmu.terms import Combination, Term, terms
+from clutchwork.fmu.variables import FmuVariable, NumberThatFollows, Place, VariableKind
 from clutchwork.results.forms import Form
 from clutchwork.results.rows import numbers
 from clutchwork.run.failure import JAMS, covered, jam_of
 from clutchwork.run.simulation import acting
 
 # the last digits are the version of this format
-MAGIC = b"CWFMU003"
+MAGIC = b"CWFMU004"
 T = TypeVar("T")
 
 
@@ -109,13 +110,14 @@ def _body(made: Interface) -> bytes:
     to.each([CAUSES[k][0] if k in CAUSES else "start" for k in range(max(CAUSES) + 1)], to.text)
     to.each([MODES[k] for k in sorted(MODES)], to.text)
     to.integer(int(MODEL_EXCHANGE in made.kinds))
-    to.each(made.states, lambda state: _state(to, state.number, state.nominal))
+    to.each(made.states, lambda state: _state(to, state.number, state.nominal, state.variable))
     return to.content()
 
 
-def _state(to: ResourceWriter, number: int, nominal: float) -> None:
+def _state(to: ResourceWriter, number: int, nominal: float, variable: int) -> None:
     to.integer(number)
     to.number(nominal)
+    to.integer(variable)
 
 
 def _option(to: ResourceWriter, name: str, value: float) -> None:
@@ -133,13 +135,20 @@ def _variable(to: ResourceWriter, one: FmuVariable, of: int) -> None:
     to.text(one.name)
     words = in_words(one.bounds)
     to.text(f"{words} {one.unit}" if words and one.unit != "1" else words)
-    for number in (one.start, *one.bounds):
+    for number in (one.start, *one.bounds, one.nominal):
         to.number(number)
     to.integer(of)
     to.integer(1 if one.kind is VariableKind.SLOPE else 0)
     to.each(one.inputs, to.integer)
     to.each(one.words, lambda place: _place(to, place))
     to.each(one.params, lambda place: _place(to, place))
+    to.each(one.forms, lambda number: _follows(to, number))
+
+
+def _follows(to: ResourceWriter, number: NumberThatFollows) -> None:
+    for place in (number.form, number.term, number.side, number.share, number.is_reciprocal):
+        to.integer(int(place))
+    to.number(number.slope)
 
 
 def _place(to: ResourceWriter, place: Place | tuple[int, float]) -> None:
@@ -169,40 +178,13 @@ def _jammed() -> int:
 
 def _form(to: ResourceWriter, form: Form) -> None:
     """A signal as a sum of terms: a combination of numbers of the row, or the product of two."""
-    to.each(list(_terms(form.data())), lambda term: _term(to, *term))
+    to.each(terms(form), lambda term: _term(to, term))
 
 
-def _terms(data: Sequence[Any]) -> Iterable[tuple[Any, Any, int]]:
-    """Terms of a form from what `Form.data` says: (combination, other one or None, place of the mode that gates)."""
-    kind, *rest = data
-    if kind == "q":
-        for part in rest[0]:
-            yield from _terms(part)
-    elif kind == "p":
-        (one, _, _), (other, _, gate) = (next(iter(_terms(part))) for part in rest)
-        yield one, other, gate
-    elif kind == "s":
-        yield from ((one, None, rest[1]) for one, _, _ in _terms(rest[0]))
-    else:
-        yield _combination(kind, rest), None, -1
-
-
-def _combination(kind: str, rest: Sequence[Any]) -> tuple[float | None, list[tuple[int, float]]]:
-    """Offset and shares of numbers of the row."""
-    if kind == "c":
-        return None, [(rest[0], 1.0)]
-    if kind == "a":
-        place, scale, offset = rest
-        return offset, [(place, scale)]
-    if kind == "t":
-        return None, [(place, -1.0 if rest[1] else 1.0) for place in rest[0]]
-    return None, list(zip(*rest, strict=True))
-
-
-def _term(to: ResourceWriter, one: Any, other: Any, gate: int) -> None:
-    to.integer(gate)
-    to.integer(0 if other is None else 1)
-    for offset, shares in (one, other or (None, [])):
-        to.integer(0 if offset is None else 1)
-        to.number(offset or 0.0)
-        to.each(shares, lambda place: _place(to, place))
+def _term(to: ResourceWriter, term: Term) -> None:
+    to.integer(term.gate)
+    to.integer(0 if term.other is None else 1)
+    for part in (term.one, term.other or Combination(None, ())):
+        to.integer(0 if part.offset is None else 1)
+        to.number(part.offset or 0.0)
+        to.each(part.shares, lambda place: _place(to, place))

@@ -32,6 +32,17 @@ class Place(NamedTuple):
     slope: float
 
 
+class NumberThatFollows(NamedTuple):
+    """A number of an output that follows a parameter or its reciprocal: its form among all, and where in that."""
+
+    form: int
+    term: int
+    side: int
+    share: int  # -1: the offset
+    slope: float
+    is_reciprocal: bool
+
+
 @dataclass(frozen=True)
 class FmuVariable:
     """One variable; its value reference is its place among all."""
@@ -49,6 +60,7 @@ class FmuVariable:
     inputs: tuple[int, ...] = ()  # numbers in the core
     words: tuple[Place, ...] = ()  # of the bytes of the System
     params: tuple[Place, ...] = ()  # of the pool of parameters
+    forms: tuple[NumberThatFollows, ...] = ()  # of outputs, which follow a parameter
     form: Form | None = field(default=None, repr=False)
     follows_states: bool = False  # an output that no input moves at once
     state: int = -1  # number of the continuous state that it is

@@ -265,14 +265,15 @@ Status advance_by_events(Workspace<T>& ws, double t_end, Sink& sink, bool to_eve
 
 /// Steps of one length: run/fixed/advance.hpp.
 template <class T>
-Status advance_fixed(Workspace<T>& ws, double t_end, Sink& sink);
+Status advance_fixed(Workspace<T>& ws, double t_end, Sink& sink, bool to_event);
 
-/// Integrate to t_end by the method that is wanted; `to_event`: steps of one length go on beyond events.
+/// Integrate to t_end by the method that is wanted; `to_event`: no farther than the first event, or the end of the step
+/// of one length in which it is.
 template <class T>
 Status advance(Workspace<T>& ws, double t_end, Sink& sink, bool to_event = false) {
   // other scalars, which tests compute with, have no steps of one length
   if constexpr (std::is_same_v<T, double>) {
-    if (ws.options.method == Method::fixed) return advance_fixed(ws, t_end, sink);
+    if (ws.options.method == Method::fixed) return advance_fixed(ws, t_end, sink, to_event);
     // what fixed steps have left is decided anew
     if (ws.started && ws.fixed.time == ws.time) ws.params_changed = true, ws.fixed.time = -infinity;
   }

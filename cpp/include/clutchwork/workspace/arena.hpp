@@ -11,11 +11,15 @@ namespace clutchwork {
 /// Whether the matrices of a system are whole: it has few speeds, or directions that vary.
 inline bool is_few(const SystemCounts& s) { return s.speeds <= few_speeds || s.transmissions > 0; }
 
+/// Whether there is room for the matrices of steps of one length.
+inline bool has_fixed_steps(const SystemCounts& s) { return is_few(s) || s.speeds <= most_fixed_speeds; }
+
 /// Numbers of things in a system, by which arrays are sized; for few speeds the matrices are whole.
 struct Sizes {
   std::int64_t speeds, prescribed, supplies, meters, states, shared, nodes, elements, contacts, directions, references,
       signals, segments, flows, processes, transmissions, loads;
   bool few;
+  bool fixed;                  ///< it may have steps of one length
   bool full;                   ///< it runs in the full form
   std::int64_t spares;         ///< most locked contacts that can depend on others
   std::int64_t set;            ///< most contacts of a set that depend on each other
@@ -48,6 +52,7 @@ struct Sizes {
         transmissions(s.transmissions),
         loads(s.loads),
         few(is_few(s)),
+        fixed(has_fixed_steps(s)),
         full(s.full != nullptr && s.full[0] != 0) {
     const auto nv = speeds, nc = contacts;
     spares = few ? (nc > 1 || transmissions > 0 ? nc : 0) : s.spares, set = few ? spares : s.set_size;

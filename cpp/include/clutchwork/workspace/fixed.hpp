@@ -19,13 +19,15 @@ struct Fixed {
   T* held = nullptr;    ///< of each contact: static torque in it, against slip backward, then forward
 
   // made anew where it is not there
-  bool ready = false;        ///< the branches are packed
-  double length = 0;         ///< [s] of the steps whose matrices there are, 0: none
-  int* bends = nullptr;      ///< of each direction: its piece follows from where it is
-  int* two_sided = nullptr;  ///< of each contact: it resists both directions differently
-  T* factor = nullptr;       ///< Cholesky factor of the matrix of a step, by rows
-  T* answer = nullptr;       ///< change of the speeds by a unit impulse of each contact
-  T* mobility = nullptr;     ///< of the contacts, by rows: change of slips by unit impulses
+  bool ready = false;         ///< the branches are packed
+  double length = 0;          ///< [s] of the steps whose matrices there are, 0: none
+  bool has_massless = false;  ///< some speeds have no inertia
+  int* massless = nullptr;    ///< of each direction: whether some of these are in its rate
+  int* bends = nullptr;       ///< of each direction: its piece follows from where it is
+  int* two_sided = nullptr;   ///< of each contact: it resists both directions differently
+  T* factor = nullptr;        ///< Cholesky factor of the matrix of a step, by rows
+  T* answer = nullptr;        ///< change of the speeds by a unit impulse of each contact
+  T* mobility = nullptr;      ///< of the contacts, by rows: change of slips by unit impulses
 
   // scratch of a step
   T *ahead = nullptr, *state_ahead = nullptr, *given_ahead = nullptr;  ///< speeds and states predicted for its middle
@@ -45,12 +47,12 @@ struct Fixed {
 
   template <class P, class A>
   static void lay_out(P& p, A& a, const Sizes& n) {
-    const bool has = !has_tangents<T> && n.few;
+    const bool has = !has_tangents<T> && n.fixed;
     const auto nv = has ? n.speeds : 0, ns = has ? n.states : 0, nd = has ? n.directions : 0;
     const auto nc = has ? n.contacts : 0, np = has ? n.prescribed : 0;
     a.take(p.gain, nv), a.take(p.state_gain, ns), a.take(p.given_gain, np), a.take(p.given, np);
     a.take(p.kept, nd), a.take(p.torque, nd), a.take(p.held, 2 * nc);
-    a.take(p.bends, nd), a.take(p.two_sided, nc);
+    a.take(p.bends, nd), a.take(p.massless, nd), a.take(p.two_sided, nc);
     a.scratch(p.factor, nv * nv), a.scratch(p.answer, nc * nv), a.scratch(p.mobility, nc * nc);
     a.scratch(p.ahead, nv), a.scratch(p.state_ahead, ns), a.scratch(p.change, nv), a.scratch(p.state_change, ns);
     a.scratch(p.given_change, np), a.scratch(p.given_ahead, np), a.scratch(p.force, nd), a.scratch(p.slope, nd),

@@ -63,11 +63,7 @@ inline bool takes(Run& ws) {
     const Refusal why = refusal_of(ws, d);
     if (why != Refusal::taken) return refuse(d, why);
   }
-  if (!is_few(sys)) return refuse(-1, Refusal::many_speeds);
-  for (int i = 0; i < sys.speeds; ++i) {
-    if (sys.massless[i] != 0) return refuse(-1, Refusal::massless);
-  }
-  return true;
+  return has_fixed_steps(sys) || refuse(-1, Refusal::many_speeds);
 }
 
 /// The branches of all directions, each at the place of its direction, and what they ask for in every step.
@@ -76,11 +72,16 @@ inline void pack_all(Run& ws) {
   const int ne = int(ws.sys.elements);
   int block = 0;
   ws.n_rates = 0;
+  f.has_massless = false;
   for (int d = 0; d < ws.n_directions; ++d) {
     pack(ws, d, d < ne ? 0 : forward, block);
     const bool first = d >= ne || ws.sys.element_way[d] == 0;
     const bool settles = d < ne ? is_settling(ws.sys.element_kind[d]) : is_settling_law(ws.sys.contact_law[d - ne]);
     const bool crossed = d < ne ? crosses(ws.sys.element_kind[d], -1) : crosses(0, ws.sys.contact_law[d - ne]);
+    f.massless[d] = 0;
+    const auto row = rate_row(ws.sys, d);
+    for (int k = 0; k < row.n; ++k) f.massless[d] = f.massless[d] != 0 || ws.sys.massless[row.column[k]] != 0;
+    f.has_massless = f.has_massless || f.massless[d] != 0;
     f.bends[d] = !first ? straight : crossed ? crossing : settles || edge_count(ws, d) > 0 ? settling : straight;
   }
   ws.n_branches = ws.n_rates;

@@ -88,6 +88,23 @@ inline void move_freely(Run& ws, double h) {
   }
 }
 
+/// Speeds without inertia follow torques at once, of which a step knows those in its middle: they go on from the
+/// middles of two steps, and rates with them. docs/theory/fixed-steps.md, rule 5
+inline void settle_massless(Run& ws) {
+  const System& sys = ws.sys;
+  Fixed<double>& f = ws.fixed;
+  for (int i = 0; i < sys.speeds; ++i) {
+    if (sys.massless[i] == 0) continue;
+    const double middle = 0.5 * f.change[i], last = -0.5 * f.gain[i];
+    f.change[i] = middle + 0.5 * (middle - last);
+  }
+  for (int d = 0; d < ws.n_directions; ++d) {
+    if (f.massless[d] == 0) continue;
+    f.rate_change[d] = rate_row(sys, d).times(f.change);
+    for (int p = 0; p < sys.prescribed; ++p) f.rate_change[d] += prescribed_share(ws, d, p) * f.given_change[p];
+  }
+}
+
 /// Speeds, torques and states with the impulses.
 inline void move(Run& ws, double h) {
   const System& sys = ws.sys;
@@ -101,6 +118,8 @@ inline void move(Run& ws, double h) {
   }
   end_states(ws);
   if (sys.shared > 0) change_shared(ws, h);
+  // the first step has no middle before its own
+  if (f.has_massless && f.before > 0) settle_massless(ws);
 }
 
 /// Contacts that only join prescribed shafts: their torque moves nothing. False: a freewheel is turned backward.

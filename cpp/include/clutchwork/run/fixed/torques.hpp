@@ -101,6 +101,8 @@ inline bool is_kept(const Run& ws, const Branch<double>& b, double h) {
   const int d = b.direction;
   const double off = abs(f.slope[d] - f.kept[d]);
   if (b.states > 0 && b.ways == 1) return off <= 1e-14 * abs(f.slope[d]);
+  // a speed without inertia goes where its slopes are
+  if (f.massless[d] != 0) return off <= 1e-3 * abs(f.slope[d]);
   return 0.5 * h * off * ws.geometry.own[d] <= 0.02;
 }
 
