@@ -150,5 +150,5 @@ def test_what_is_wrong_is_said() -> None:
     with pytest.raises(cw.UseError, match="give sources for MGB"):
         HybridController(box, plant, machines={"MGA": TorqueSource("MGA.command", -1.0, 1.0)}, **more)
     both = {name: TorqueSource(f"{name}.command", -1.0, 1.0) for name in box.machines}
-    with pytest.raises(cw.UseError, match="'2' is no split"):
+    with pytest.raises(cw.UseError, match="'2' is not a split"):
         HybridController(box, plant, machines=both, mode="2", **more)

@@ -70,7 +70,7 @@ class HybridController:
         mode: at the start, by default the first split of the shift table
         prefix: name of the Transmission
 
-    UseError where a machine is missing, or the mode is no split. What it did is in `records`.
+    UseError where a machine is missing, or the mode is not a split. What it did is in `records`.
     """
 
     def __init__(
@@ -88,11 +88,13 @@ class HybridController:
         self.modes = [row for row in box.gears if box.combination(box.closed_in(row)).kind == SPLIT]
         missing = [name for name in box.machines if name not in machines]
         if missing or len(box.machines) != 2:
-            give = f"give sources for {listed(missing)}" if missing else f"{quote(box.name)} has not two machines"
+            give = f"give sources for {listed(missing)}" if missing else f"{quote(box.name)} does not have two machines"
             raise UseError(CALL, [give])
         self.mode = mode or next(iter(self.modes), "")
         if self.mode not in self.modes:
-            raise UseError(CALL, [f"{quote(self.mode)} is no split{near(self.mode, self.modes, listed(self.modes))}"])
+            raise UseError(
+                CALL, [f"{quote(self.mode)} is not a split{near(self.mode, self.modes, listed(self.modes))}"]
+            )
         self.box, self.machines, self.engine, self.settings, self.prefix = box, machines, engine, settings, prefix
         self.motions = {row: split_motion(box, box.closed_in(row), plant.inertias) for row in self.modes}
         self.records: list[ShiftRecord] = []

@@ -133,7 +133,7 @@ class TorqueShare:
     def signals(
         self, control: ShiftController, now: Measured, pedal: float, passed: float, period: float
     ) -> tuple[dict[str, float], float]:
-        """Values by signal, and the throttle that is left for an engine that is no source, 0 to 1.
+        """Values by signal, and the throttle that is left for an engine beside the sources, 0 to 1.
 
         What is asked for is a change of the torque at the input, below zero a reduction: `control.torque_change`.
         Parameters: passed, time since the last call, period, to the next one [s].
