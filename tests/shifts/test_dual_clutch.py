@@ -66,7 +66,7 @@ def test_two_halves(name: str) -> None:
 def test_the_gear_that_is_asked_for_waits(name: str) -> None:
     """100 random cycles of speed and throttle without jumps: what is asked for had been chosen the instant before."""
     layout = halves(cw.Gearbox.load(name))
-    schedule = cw.shifts.ShiftSchedule.of(cw.Gearbox.load(name), UP, DOWN)
+    schedule = cw.shifts.ShiftMap.two_lines(cw.Gearbox.load(name), UP, DOWN)
     rng, made = np.random.default_rng(5), 0
     for _ in range(100):
         time = np.arange(0.0, 200.0, 0.25)
@@ -76,7 +76,7 @@ def test_the_gear_that_is_asked_for_waits(name: str) -> None:
         pedal = 0.5 + 0.4 * np.sin(rng.uniform(0.01, 0.05) * time + rng.uniform(0, 6))
         gear, waiting = "1", "2"
         for output, throttle in zip(speed, pedal, strict=True):
-            wanted = schedule.gear(gear, float(output), float(throttle))
+            wanted = schedule.gear(gear, cw.shifts.Measured(0.0, float(output), 0.0, float(throttle), {}))
             if wanted != gear:
                 # it starts somewhere
                 assert wanted == waiting or output == speed[0]
@@ -140,7 +140,7 @@ def hole(run: cw.Trajectory, shift: cw.shifts.ShiftRecord) -> float:
 @pytest.mark.parametrize("name", DSG)
 def test_launch_and_all_gears_under_power(name: str) -> None:
     box, system = cw.Gearbox.load(name), car(name).assemble()
-    schedule = cw.shifts.ShiftSchedule.of(box, UP, DOWN)
+    schedule = cw.shifts.ShiftMap.two_lines(box, UP, DOWN)
     plant = cw.shifts.plant_of(system, box)
     control = cw.shifts.ShiftController(box, plant, schedule=schedule, settings=LAUNCH)
     sim, top = cw.Simulator(system), len(box.ratios) - 1
@@ -236,7 +236,7 @@ def test_stop_and_go_and_reverse(name: str, pistons: bool) -> None:
     d, engine = stop_and_go(name, pistons=pistons)
     box, system, sim = cw.Gearbox.load(name), d.assemble(), cw.Simulator(d.assemble())
     plant = cw.shifts.plant_of(system, box)
-    schedule = cw.shifts.ShiftSchedule.of(box, UP, DOWN)
+    schedule = cw.shifts.ShiftMap.two_lines(box, UP, DOWN)
     control = cw.shifts.ShiftController(box, plant, schedule=schedule, settings=LAUNCH)
     more = {
         "throttle": lambda t: 0.4 if 0.5 < t < 8.0 or 16.0 < t < 20.0 else 0.3 if 27.0 < t < 31.0 else 0.0,

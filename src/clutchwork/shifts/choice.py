@@ -6,12 +6,11 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from clutchwork.shifts.record import NEUTRAL
-from clutchwork.shifts.shift_map import ShiftMap
 
 if TYPE_CHECKING:
     from clutchwork.shifts.record import Measured
-    from clutchwork.shifts.schedule import ShiftSchedule
     from clutchwork.shifts.settings import ShiftSettings
+    from clutchwork.shifts.shift_map import ShiftMap
 
 # time for which the input must be too slow before it is let go [s], longer than a jerk of the driveline
 SLOW = 0.1
@@ -21,7 +20,7 @@ SLOW = 0.1
 class GearChoice:
     """The next gear of a `ShiftController`."""
 
-    schedule: ShiftSchedule | ShiftMap | None
+    schedule: ShiftMap | None
     settings: ShiftSettings
     wanted: str = ""  # by request
     let_go: str = ""  # gear that was let go before the engine stalled
@@ -39,9 +38,7 @@ class GearChoice:
         return "" if wanted == gear else wanted
 
     def _scheduled(self, gear: str, now: Measured) -> str:
-        if isinstance(self.schedule, ShiftMap):
-            return self.schedule.gear(gear, now)
-        return gear if self.schedule is None else self.schedule.gear(gear, now.output_speed, now.throttle)
+        return gear if self.schedule is None else self.schedule.gear(gear, now)
 
     def _drive_off(self, now: Measured) -> str:
         """The gear to drive off in, where the last one was let go and the driver wants to go."""

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, ClassVar
 
 from clutchwork.base.errors import UseError
 from clutchwork.base.frozen import Frozen
@@ -27,7 +27,6 @@ from clutchwork.shifts.settings import ShiftSettings
 
 if TYPE_CHECKING:
     from clutchwork.gearbox.gearbox import Gearbox
-    from clutchwork.shifts.schedule import ShiftSchedule
     from clutchwork.shifts.shift_map import ShiftMap
 
 Course = ExchangeSequence | ParallelSequence | EngineLedSequence
@@ -64,7 +63,7 @@ class ShiftController:
     Parameters:
         box: the gearbox
         plant: capacities and inertias of the elements and members, from `cw.shifts.plant_of`
-        schedule: when to shift, a `ShiftSchedule` or a `ShiftMap`; none: when `request` asks for a gear
+        schedule: when to shift; none: when `request` asks for a gear
         settings: calibration
         chosen: calibration of single shifts, ("3", "4") or a kind such as "power-off upshift"
         gear: the gear that is in at the start; "N": none
@@ -77,13 +76,14 @@ class ShiftController:
 
     box: Gearbox
     plant: Plant
-    schedule: ShiftSchedule | ShiftMap | None = None
+    schedule: ShiftMap | None = None
     settings: ShiftSettings = field(default_factory=ShiftSettings)
     chosen: Mapping[tuple[str, str] | str, ShiftSettings] = field(default_factory=dict)
     gear: str = NEUTRAL
     prefix: str = "gearbox"
     pause: float = 0.3  # s, from the end of a shift to the next one that the schedule asks for
     known: Mapping[str, float] = field(default_factory=dict)  # s
+    always: ClassVar[bool] = False  # whether it is called as often between shifts
     # what it remembers
     records: list[ShiftRecord] = field(default_factory=list)
     _left: list[Exchange | Handover] = field(default_factory=list)
@@ -141,9 +141,9 @@ class ShiftController:
         return self._course is not None
 
     @property
-    def led(self) -> bool:
-        """Whether the engine changes its speed by its own torque: in a dual-clutch gearbox."""
-        return self._halves is not None
+    def asks(self) -> str:
+        """What it cannot do without `sources`, if anything."""
+        return "the engine changes its speed by its own torque" if self._halves else ""
 
     @property
     def state(self) -> str:
