@@ -33,6 +33,10 @@ class GearChoice:
     def take(self, gear: str, rested: bool, now: Measured) -> str:
         """The gear to shift to from the one that is in, empty where it stays; rested: time for the schedule."""
         wanted, self.wanted = self.wanted or self._drive_off(now), ""
+        slow = now.input_speed < self.settings.let_go * self.settings.launch_speed
+        if gear == NEUTRAL and wanted != NEUTRAL and slow and now.throttle <= self.settings.launch_throttle:
+            # it is engaged with the pedal, or the engine would stall
+            self.let_go, wanted = wanted or self.let_go, ""
         if not wanted and self.schedule is not None and rested:
             wanted = self._scheduled(gear, now)
         return "" if wanted == gear else wanted
