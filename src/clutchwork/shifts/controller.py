@@ -207,27 +207,24 @@ class ShiftController:
 
     def _begin(self, time: float, rates: Mapping[str, float] | None = None) -> None:
         """The next part of the plan; rates, of slips where another shift goes over into it."""
-        one, record = self._left[0], self.records[-1]
-        filled, ahead = len(self._left) < len(record.exchanges), self._left[1] if len(self._left) > 1 else None
+        record, do = self.records[-1], self._do
+        one, ahead = self._left[0], self._left[1] if len(self._left) > 1 else None
+        with_, filled = self._with(record), len(self._left) < len(record.exchanges)
         if isinstance(one, Handover):
-            opens = tuple(name for name in self._do.kinds if name not in (*one.kept, *one.elements))
+            opens = tuple(name for name in do.kinds if name not in (*one.kept, *one.elements))
             on = ahead.on if isinstance(ahead, Handover) else ()
-            made = ParallelSequence(one, self._with(record), self._do, self._handover, time, opens, filled, on)
+            made = ParallelSequence(one, with_, do, self._handover, time, opens, filled, on)
             made.over, made.rates = bool(rates), rates or {}
             self._course = made
-            record.phases.append((time, "fill"))
-            return
-        opens = tuple(name for name in self._do.kinds if name not in (*one.kept, one.off, one.on, *self._do.rivals))
-        opens += (one.on,) if not one.off else ()
-        if self._halves and one.off:
-            self._course = EngineLedSequence(one, self._with(record), self._do, time, self._output)
-            record.phases.append((time, "mesh"))
-            return
-        next_on = ahead.on if isinstance(ahead, Exchange) else ""
-        teeth = self._sourced and self._do.is_dog(one.off) and self._do.is_dog(one.on)
-        kind = InterruptedSequence if teeth else ExchangeSequence
-        self._course = kind(one, self._with(record), self._do, time, filled, next_on, opens)
-        record.phases.append((time, "mesh"))
+        elif self._halves and one.off:
+            self._course = EngineLedSequence(one, with_, do, time, self._output)
+        else:
+            opens = tuple(name for name in do.kinds if name not in (*one.kept, one.off, one.on, *do.rivals))
+            opens += (one.on,) if not one.off else ()
+            teeth = self._sourced and do.is_dog(one.off) and do.is_dog(one.on)
+            kind = InterruptedSequence if teeth else ExchangeSequence
+            self._course = kind(one, with_, do, time, filled, ahead.on if isinstance(ahead, Exchange) else "", opens)
+        record.phases.append((time, self._course.state))
 
     def _handover(self, off: Sequence[str], on: Sequence[str], kept: Sequence[str]) -> Handover | None:
         return handover(self.box, off, on, kept, self.plant.inertias)

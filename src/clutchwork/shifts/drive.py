@@ -76,8 +76,9 @@ class _SensorReader:
         first, second, *torques = values[: len(self.plain)]
         rest = values[len(self.plain) :]
         demand, least, most = self.share.limits(throttle, first)
-        known = self.share.sources and not torques
-        total = demand + self.change if known else sum(s * t for s, t in zip(self.signs, torques, strict=True))
+        total = sum(sign * torque for sign, torque in zip(self.signs, torques, strict=True))
+        if self.share.sources and not torques:
+            total = min(max(demand + self.change, least), most)
         slips = dict(zip(self.elements, rest, strict=False))
         sleeves = dict(zip(self.dogs, rest[len(slips) :], strict=True))
         given = {name: float(self.sim[signal]) for name, signal in self.beside.items()}
