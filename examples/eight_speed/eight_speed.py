@@ -51,7 +51,7 @@ def drive(name: str = BOX, t_end: float = T_END, **options: float) -> tuple[cw.T
     """From rest through all gears and back, under the controller."""
     box = cw.Gearbox.load(name)
     system = car(box, "1").assemble()
-    schedule = cw.shifts.ShiftSchedule.of(box, UP, DOWN, skips=False)
+    schedule = cw.shifts.ShiftMap.two_lines(box, UP, DOWN, skips=False)
     control = cw.shifts.ShiftController(box, cw.shifts.plant_of(system, box), schedule=schedule, gear="1")
     sim = cw.Simulator(system, rtol=1e-6, **options)
     sensed = cw.shifts.Sensed(torque=TURBINE, throttle="combustion.throttle")

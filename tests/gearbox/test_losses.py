@@ -95,7 +95,11 @@ def test_parts() -> None:
                 )
                 assert found.efficiency[i][j][k] == pytest.approx(share, rel=1e-12)
     assert np.shape(found.power) == (2, 3, 3)
-    assert "open elements" in str(found)
+    assert "open elements W" in str(found)
+    # tables are as long as their axes say
+    assert [axis.unit for axis in found.axes] == ["K", "rad/s", "N m"]
+    sizes = [len(axis.values) for axis in found.axes]
+    assert [len(found.power), len(found.power[0]), len(found.power[0][0])] == sizes
 
 
 def test_closed_plates_have_no_drag_and_mistakes_are_told() -> None:

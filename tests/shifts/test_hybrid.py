@@ -8,9 +8,10 @@ import numpy as np
 import pytest
 
 import clutchwork as cw
-from clutchwork.shifts import EngineSource, HybridController, HybridSettings, TorqueSource, drive_hybrid
+from clutchwork.shifts import EngineSource, HybridController, HybridSettings, Sensed, TorqueSource, drive
 from clutchwork.shifts.split_motion import split_motion
 
+CHARGE = Sensed(charge="battery.charge")
 MOST, POWER = 280.0, 70e3  # N m, W
 TABLES = {
     "full_load": [(0.0, 150.0), (150.0, 300.0), (550.0, 320.0)],
@@ -100,7 +101,7 @@ def test_mode_shifts_up_and_down() -> None:
     box = cw.Gearbox.load("gm-2ml70")
     d, engine, store = hybrid(box, "EVT1", max_current=150.0, max_charging_current=100.0)
     sim, control = controlled(box, d, engine, store)
-    run = drive_hybrid(sim, control, 45.0, throttle=lambda t: 0.5 if t < 15.0 else -0.5, charge="battery.charge")
+    run = drive(sim, control, 45.0, throttle=lambda t: 0.5 if t < 15.0 else -0.5, sensed=CHARGE)
     assert [(one.before, one.after) for one in control.records] == [("EVT1", "EVT2"), ("EVT2", "EVT1")]
     # docs/theory/jerk.md: what is felt
     time = np.arange(0.5, 44.5, 1e-3)
@@ -130,7 +131,7 @@ def test_a_weak_battery_is_kept_within_its_limits() -> None:
     for limits in ({"max_current": 5.0, "max_charging_current": 2.0}, {"max_current": 150.0}):
         d, engine, store = hybrid(box, "split", **limits)
         sim, control = controlled(box, d, engine, store, 1800.0, charge=0.3)
-        run = drive_hybrid(sim, control, 12.0, throttle=lambda t: 0.6 if t < 8.0 else -0.2, charge="battery.charge")
+        run = drive(sim, control, 12.0, throttle=lambda t: 0.6 if t < 8.0 else -0.2, sensed=CHARGE)
         power = sum(run[f"{name}.electric_power"] for name in box.machines)
         low, high = store.limits(0.6)
         # speeds move on for a period of the controller
@@ -150,5 +151,5 @@ def test_what_is_wrong_is_said() -> None:
     with pytest.raises(cw.UseError, match="give sources for MGB"):
         HybridController(box, plant, machines={"MGA": TorqueSource("MGA.command", -1.0, 1.0)}, **more)
     both = {name: TorqueSource(f"{name}.command", -1.0, 1.0) for name in box.machines}
-    with pytest.raises(cw.UseError, match="'2' is no split"):
+    with pytest.raises(cw.UseError, match="'2' is not a split"):
         HybridController(box, plant, machines=both, mode="2", **more)

@@ -91,7 +91,7 @@ def test_launch_and_stop_without_converter(name: str) -> None:
     """The input keeps its launch speed while the clutch slips; braking to rest it is let go and the engine runs on."""
     box = BOXES[name]
     settings = cw.shifts.ShiftSettings(launch_speed=150.0)
-    schedule = cw.shifts.ShiftSchedule.of(
+    schedule = cw.shifts.ShiftMap.two_lines(
         box, up=((0.0, 180.0), (0.3, 250.0), (1.0, 550.0)), down=((0.0, 100.0), (0.3, 120.0), (1.0, 300.0))
     )
     run, control = driven(
@@ -138,7 +138,7 @@ def test_the_driver_gives_up_a_launch() -> None:
         8.0,
         lambda time: 0.35 if 0.5 < time < 1.2 or time > 3.5 else 0.0,
         sensed=RIGID,
-        schedule=cw.shifts.ShiftSchedule.of(box, up=((0.0, 300.0),), down=((0.0, 90.0),)),
+        schedule=cw.shifts.ShiftMap.two_lines(box, up=((0.0, 300.0),), down=((0.0, 90.0),)),
         settings=cw.shifts.ShiftSettings(launch_speed=150.0),
     )
     first, second = control.records[:2]

@@ -52,7 +52,7 @@ def automatic() -> tuple[cw.Trajectory, list[cw.shifts.ShiftRecord]]:
     d.add(cw.Transmission("gearbox", gearbox=box, input=shaft, output=out, inertia=0.005, torque=300.0))
     car(d, out, 3.8)
     system = d.assemble()
-    schedule = cw.shifts.ShiftSchedule.of(box, UP, DOWN)
+    schedule = cw.shifts.ShiftMap.two_lines(box, UP, DOWN)
     settings = cw.shifts.ShiftSettings(launch_speed=150.0)
     control = cw.shifts.ShiftController(box, cw.shifts.plant_of(system, box), schedule=schedule, settings=settings)
     sources = [cw.shifts.EngineSource.of(engine)]
@@ -80,7 +80,7 @@ def dual_clutch() -> tuple[cw.Trajectory, list[cw.shifts.ShiftRecord]]:
     d.add(cw.Transmission("gearbox", gearbox=box, input=shaft, output=out, inertia=0.003, torque=300.0))
     car(d, out, 1.0)
     system = d.assemble()
-    schedule = cw.shifts.ShiftSchedule.of(box, UP, DOWN)
+    schedule = cw.shifts.ShiftMap.two_lines(box, UP, DOWN)
     settings = cw.shifts.ShiftSettings(launch_speed=150.0)
     control = cw.shifts.ShiftController(box, cw.shifts.plant_of(system, box), schedule=schedule, settings=settings)
     sources = [cw.shifts.EngineSource.of(engine)]
@@ -117,7 +117,7 @@ def power_split() -> tuple[cw.Trajectory, list[cw.shifts.ShiftRecord]]:
         engine=cw.shifts.EngineSource.of(engine),
         settings=settings,
     )
-    run = cw.shifts.drive_hybrid(cw.Simulator(system), control, 64.0, throttle="driver.throttle")
+    run = cw.shifts.drive(cw.Simulator(system), control, 64.0, throttle="driver.throttle")
     return run, control.records
 
 
@@ -140,7 +140,7 @@ def axle() -> tuple[cw.Trajectory, list[cw.shifts.ShiftRecord]]:
     d.add(cw.ElectricMotor("motor", shaft=rotor, command=0.0, **limits))
     car(d, out, 1.0)
     system = d.assemble()
-    schedule = cw.shifts.ShiftSchedule.of(box, [(0.0, 420.0)], [(0.0, 120.0)])
+    schedule = cw.shifts.ShiftMap.two_lines(box, [(0.0, 420.0)], [(0.0, 120.0)])
     plant = cw.shifts.plant_of(system, box)
     control = cw.shifts.ShiftController(box, plant, gear="1", schedule=schedule)
     motor = cw.shifts.TorqueSource(

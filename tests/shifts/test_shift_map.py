@@ -192,3 +192,30 @@ def test_a_drive_follows_its_map() -> None:
         line = made.speed((record.before, record.after), 0.5)
         # the pause behind the shift before, and a period at rest, in which the car goes on
         assert line < speed < 1.15 * line
+
+
+# speeds of the input [rad/s] for all gears
+TWO = (((0.0, 180.0), (1.0, 580.0)), ((0.0, 100.0), (1.0, 300.0)))
+
+
+@pytest.mark.parametrize("throttle", [0.0, 0.3, 1.0])
+def test_two_lines_for_all_gears(throttle: float) -> None:
+    """Up where the input is faster than one of them in the gear that is in, down where it is slower than the other."""
+    made = ShiftMap.two_lines(BOX, *TWO)
+    for lower, higher in pairwise(GEARS):
+        up, down = (180.0 + 400.0 * throttle) / RATIOS[lower], (100.0 + 200.0 * throttle) / RATIOS[higher]
+        assert made.gear(lower, now(1.001 * up, throttle)) == higher
+        assert made.gear(lower, now(0.999 * up, throttle)) == lower
+        assert made.gear(higher, now(0.999 * down, throttle)) == lower
+        assert made.gear(higher, now(1.001 * down, throttle)) == higher
+
+
+def test_two_lines_for_some_gears() -> None:
+    made = ShiftMap.two_lines(BOX, *TWO, gears=("1", "2", "3"), skips=False)
+    assert list(made.ratios) == ["1", "2", "3"]
+    assert made.gear("1", now(500.0)) == "2"
+    # reverse and neutral are left alone
+    assert made.gear("R", now(-50.0)) == "R"
+    assert made.gear("N", now(50.0)) == "N"
+    with pytest.raises(cw.ModelError, match=r"shifts 1-2-1: hunts at pedal 0: up at 38.3"):
+        ShiftMap.two_lines(BOX, TWO[0], ((0.0, 170.0), (1.0, 300.0)))

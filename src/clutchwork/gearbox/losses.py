@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
 from math import isfinite, log10, pi
-from typing import TYPE_CHECKING, TypeAlias
+from typing import TYPE_CHECKING, NamedTuple, TypeAlias
 
 from clutchwork.base.classes import dataclass
 from clutchwork.base.errors import UseError, near
@@ -156,6 +156,14 @@ KINDS: Mapping[type, str] = {
 }  # fmt: skip
 
 
+class Axis(NamedTuple):
+    """What a table is over: the quantity, its unit, and the values of its rows."""
+
+    name: str
+    unit: str
+    values: tuple[float, ...]
+
+
 @dataclass(frozen=True, repr=False)
 class LossMap:
     """Losses of a gear over temperature, speed and torque of the input.
@@ -169,6 +177,15 @@ class LossMap:
     speeds: tuple[float, ...]
     torques: tuple[float, ...]
     shares: Mapping[str, Table]
+
+    @property
+    def axes(self) -> tuple[Axis, Axis, Axis]:
+        """Of its tables, the outer one first."""
+        return (
+            Axis("temperature", "K", self.temperatures),
+            Axis("speed", "rad/s", self.speeds),
+            Axis("torque", "N m", self.torques),
+        )
 
     @property
     def power(self) -> Table:
@@ -190,7 +207,8 @@ class LossMap:
         )
 
     def __str__(self) -> str:
-        lines = [["temperature", "speed", "torque", *self.shares, "all", "efficiency"]]
+        heads = [f"{axis.name} {axis.unit}" for axis in self.axes]
+        lines = [[*heads, *(f"{cause} W" for cause in (*self.shares, "all")), "efficiency"]]
         power, efficiency = self.power, self.efficiency
         for i, temperature in enumerate(self.temperatures):
             for j, speed in enumerate(self.speeds):

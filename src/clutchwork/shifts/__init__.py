@@ -14,12 +14,11 @@ from clutchwork.shifts.faults import fault_table, single_faults
 from clutchwork.shifts.fill_test import fill_test
 from clutchwork.shifts.gears import InGear, gears_of
 from clutchwork.shifts.handover import Handover
-from clutchwork.shifts.hybrid import HybridController, HybridSettings, drive_hybrid
+from clutchwork.shifts.hybrid import HybridController, HybridSettings
 from clutchwork.shifts.metrics import ShiftQuality, qualities
 from clutchwork.shifts.plant import Plant, plant_of
 from clutchwork.shifts.record import Finding, Measured, ShiftRecord
 from clutchwork.shifts.report import overview, picture, table
-from clutchwork.shifts.schedule import ShiftSchedule
 from clutchwork.shifts.settings import ShiftSettings
 from clutchwork.shifts.shift_map import Inhibit, ShiftMap
 from clutchwork.shifts.survey import Survey, Surveyed, neighbours, survey
@@ -47,14 +46,12 @@ __all__ = [
     "ShiftMap",
     "ShiftQuality",
     "ShiftRecord",
-    "ShiftSchedule",
     "ShiftSettings",
     "Survey",
     "Surveyed",
     "TorqueSource",
     "diagnose",
     "drive",
-    "drive_hybrid",
     "exchanges",
     "fault_table",
     "fill_test",

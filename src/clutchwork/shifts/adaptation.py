@@ -1,4 +1,4 @@
-"""What a shift shows of the pistons of its elements, learnt for the next one. docs/theory/shifts.md (18), (22)."""
+"""What a shift shows of the pistons of its elements, learnt for the next one. docs/theory/shifts.md (18), (26)."""
 
 from __future__ import annotations
 

@@ -6,12 +6,11 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from clutchwork.shifts.record import NEUTRAL
-from clutchwork.shifts.shift_map import ShiftMap
 
 if TYPE_CHECKING:
     from clutchwork.shifts.record import Measured
-    from clutchwork.shifts.schedule import ShiftSchedule
     from clutchwork.shifts.settings import ShiftSettings
+    from clutchwork.shifts.shift_map import ShiftMap
 
 # time for which the input must be too slow before it is let go [s], longer than a jerk of the driveline
 SLOW = 0.1
@@ -21,7 +20,7 @@ SLOW = 0.1
 class GearChoice:
     """The next gear of a `ShiftController`."""
 
-    schedule: ShiftSchedule | ShiftMap | None
+    schedule: ShiftMap | None
     settings: ShiftSettings
     wanted: str = ""  # by request
     let_go: str = ""  # gear that was let go before the engine stalled
@@ -34,14 +33,16 @@ class GearChoice:
     def take(self, gear: str, rested: bool, now: Measured) -> str:
         """The gear to shift to from the one that is in, empty where it stays; rested: time for the schedule."""
         wanted, self.wanted = self.wanted or self._drive_off(now), ""
+        slow = now.input_speed < self.settings.let_go * self.settings.launch_speed
+        if gear == NEUTRAL and wanted != NEUTRAL and slow and now.throttle <= self.settings.launch_throttle:
+            # it is engaged with the pedal, or the engine would stall
+            self.let_go, wanted = wanted or self.let_go, ""
         if not wanted and self.schedule is not None and rested:
             wanted = self._scheduled(gear, now)
         return "" if wanted == gear else wanted
 
     def _scheduled(self, gear: str, now: Measured) -> str:
-        if isinstance(self.schedule, ShiftMap):
-            return self.schedule.gear(gear, now)
-        return gear if self.schedule is None else self.schedule.gear(gear, now.output_speed, now.throttle)
+        return gear if self.schedule is None else self.schedule.gear(gear, now)
 
     def _drive_off(self, now: Measured) -> str:
         """The gear to drive off in, where the last one was let go and the driver wants to go."""

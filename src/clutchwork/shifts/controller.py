@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, ClassVar
 
 from clutchwork.base.errors import UseError
 from clutchwork.base.frozen import Frozen
@@ -28,7 +28,6 @@ from clutchwork.shifts.settings import ShiftSettings
 
 if TYPE_CHECKING:
     from clutchwork.gearbox.gearbox import Gearbox
-    from clutchwork.shifts.schedule import ShiftSchedule
     from clutchwork.shifts.shift_map import ShiftMap
 
 Course = ExchangeSequence | ParallelSequence | EngineLedSequence
@@ -65,7 +64,7 @@ class ShiftController:
     Parameters:
         box: the gearbox
         plant: capacities and inertias of the elements and members, from `cw.shifts.plant_of`
-        schedule: when to shift, a `ShiftSchedule` or a `ShiftMap`; none: when `request` asks for a gear
+        schedule: when to shift; none: when `request` asks for a gear
         settings: calibration
         chosen: calibration of single shifts, ("3", "4") or a kind such as "power-off upshift"
         gear: the gear that is in at the start; "N": none
@@ -78,13 +77,14 @@ class ShiftController:
 
     box: Gearbox
     plant: Plant
-    schedule: ShiftSchedule | ShiftMap | None = None
+    schedule: ShiftMap | None = None
     settings: ShiftSettings = field(default_factory=ShiftSettings)
     chosen: Mapping[tuple[str, str] | str, ShiftSettings] = field(default_factory=dict)
     gear: str = NEUTRAL
     prefix: str = "gearbox"
     pause: float = 0.3  # s, from the end of a shift to the next one that the schedule asks for
     known: Mapping[str, Learnt | float] = field(default_factory=dict)
+    always: ClassVar[bool] = False  # whether it is called as often between shifts
     # what it remembers
     records: list[ShiftRecord] = field(default_factory=list)
     _left: list[Exchange | Handover] = field(default_factory=list)
@@ -143,9 +143,9 @@ class ShiftController:
         return self._course is not None
 
     @property
-    def led(self) -> bool:
-        """Whether the engine changes its speed by its own torque: in a dual-clutch gearbox."""
-        return self._halves is not None
+    def asks(self) -> str:
+        """What it cannot do without `sources`, if anything."""
+        return "the engine changes its speed by its own torque" if self._halves else ""
 
     @property
     def state(self) -> str:
@@ -209,27 +209,24 @@ class ShiftController:
 
     def _begin(self, time: float, rates: Mapping[str, float] | None = None) -> None:
         """The next part of the plan; rates, of slips where another shift goes over into it."""
-        one, record = self._left[0], self.records[-1]
-        filled, ahead = len(self._left) < len(record.exchanges), self._left[1] if len(self._left) > 1 else None
+        record, do = self.records[-1], self._do
+        one, ahead = self._left[0], self._left[1] if len(self._left) > 1 else None
+        with_, filled = self._with(record), len(self._left) < len(record.exchanges)
         if isinstance(one, Handover):
-            opens = tuple(name for name in self._do.kinds if name not in (*one.kept, *one.elements))
+            opens = tuple(name for name in do.kinds if name not in (*one.kept, *one.elements))
             on = ahead.on if isinstance(ahead, Handover) else ()
-            made = ParallelSequence(one, self._with(record), self._do, self._handover, time, opens, filled, on)
+            made = ParallelSequence(one, with_, do, self._handover, time, opens, filled, on)
             made.over, made.rates = bool(rates), rates or {}
             self._course = made
-            record.phases.append((time, "fill"))
-            return
-        opens = tuple(name for name in self._do.kinds if name not in (*one.kept, one.off, one.on, *self._do.rivals))
-        opens += (one.on,) if not one.off else ()
-        if self._halves and one.off:
-            self._course = EngineLedSequence(one, self._with(record), self._do, time, self._output)
-            record.phases.append((time, "mesh"))
-            return
-        next_on = ahead.on if isinstance(ahead, Exchange) else ""
-        teeth = self._sourced and self._do.is_dog(one.off) and self._do.is_dog(one.on)
-        kind = InterruptedSequence if teeth else ExchangeSequence
-        self._course = kind(one, self._with(record), self._do, time, filled, next_on, opens)
-        record.phases.append((time, "mesh"))
+        elif self._halves and one.off:
+            self._course = EngineLedSequence(one, with_, do, time, self._output)
+        else:
+            opens = tuple(name for name in do.kinds if name not in (*one.kept, one.off, one.on, *do.rivals))
+            opens += (one.on,) if not one.off else ()
+            teeth = self._sourced and do.is_dog(one.off) and do.is_dog(one.on)
+            kind = InterruptedSequence if teeth else ExchangeSequence
+            self._course = kind(one, with_, do, time, filled, ahead.on if isinstance(ahead, Exchange) else "", opens)
+        record.phases.append((time, self._course.state))
 
     def _handover(self, off: Sequence[str], on: Sequence[str], kept: Sequence[str]) -> Handover | None:
         return handover(self.box, off, on, kept, self.plant.inertias)

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 from clutchwork.base.classes import dataclass
 from clutchwork.base.errors import UseError
 from clutchwork.shifts.controller import ShiftController
+from clutchwork.shifts.hybrid import HybridController
 from clutchwork.shifts.record import Measured
 from clutchwork.shifts.torque_sources import Source, TorqueShare
 
@@ -15,6 +16,7 @@ if TYPE_CHECKING:
     from clutchwork.run.trajectory import Trajectory
     from clutchwork.stepping.simulator import Simulator
 
+Controller = ShiftController | HybridController
 # what else is set at a time [s]: values by signal
 Also = Callable[[float, "Simulator"], Mapping[str, float]]
 
@@ -32,6 +34,7 @@ class Sensed:
         output: the same of its output
         oil: temperature of the oil [K], where a shift map asks for it
         grade: of the road [rad], where one does
+        charge: of the battery, where a `HybridController` asks for it
     """
 
     torque: tuple[str, ...] = ()
@@ -40,6 +43,7 @@ class Sensed:
     output: str = ""
     oil: str = ""
     grade: str = ""
+    charge: str = ""
 
     def __post_init__(self) -> None:
         """One name stands for a list of one."""
@@ -50,13 +54,14 @@ class Sensed:
 class _SensorReader:
     """Reads what the controller knows; the names are put together once."""
 
-    def __init__(self, sensed: Sensed, sim: Simulator, control: ShiftController, share: TorqueShare) -> None:
+    def __init__(self, sensed: Sensed, sim: Simulator, control: Controller, share: TorqueShare) -> None:
         box, prefix = control.box, control.prefix
         self.sim, self.share, self.change = sim, share, 0.0
         self.ends = [sensed.input or f"{prefix}.{box.input}.speed", sensed.output or f"{prefix}.{box.output}.speed"]
         self.signs = [-1.0 if name[0] == "-" else 1.0 for name in sensed.torque]
         self.plain = [*self.ends, *(name.removeprefix("-") for name in sensed.torque)]
-        self.beside = {name: signal for name, signal in (("oil", sensed.oil), ("grade", sensed.grade)) if signal}
+        beside = (("oil", sensed.oil), ("grade", sensed.grade), ("charge", sensed.charge))
+        self.beside = {name: signal for name, signal in beside if signal}
         inner = {"synchroniser": ".forward_dog"}
         names = [f"{prefix}.{element.name}{inner.get(element.kind, '')}" for element in box.elements]
         self.elements = [element.name for element in box.elements]
@@ -71,8 +76,9 @@ class _SensorReader:
         first, second, *torques = values[: len(self.plain)]
         rest = values[len(self.plain) :]
         demand, least, most = self.share.limits(throttle, first)
-        known = self.share.sources and not torques
-        total = demand + self.change if known else sum(s * t for s, t in zip(self.signs, torques, strict=True))
+        total = sum(sign * torque for sign, torque in zip(self.signs, torques, strict=True))
+        if self.share.sources and not torques:
+            total = min(max(demand + self.change, least), most)
         slips = dict(zip(self.elements, rest, strict=False))
         sleeves = dict(zip(self.dogs, rest[len(slips) :], strict=True))
         given = {name: float(self.sim[signal]) for name, signal in self.beside.items()}
@@ -83,7 +89,7 @@ class _SensorReader:
 
 def drive(
     sim: Simulator,
-    control: ShiftController,
+    control: Controller,
     until: float,
     *,
     throttle: Callable[[float], float] | str,
@@ -98,17 +104,15 @@ def drive(
     Use it for shifts on a schedule or by request: `control.records` has them afterwards. It can be called again to go
     on. UseError where nothing says the torque at the input, or a dual-clutch gearbox has no `sources`.
 
-    Parameters: throttle, of the driver over time, 0 to 1, or a signal such as "driver.throttle"; sensed, signals that
-    are read; also, what else is set, such as brakes; sources, motors and engine that give what a shift asks for, the
-    first one first; period, from one call of the controller to the next while it shifts [s]; resting, the same between
-    shifts.
+    Parameters: throttle, of the driver over time, 0 to 1, below 0 where machines brake, or a signal such as
+    "driver.throttle"; sensed, signals that are read; also, what else is set, such as brakes; sources, motors and engine
+    that give what a shift asks for, the first one first; period, from one call of the controller to the next while it
+    shifts [s]; resting, the same between shifts.
     """
     share, sensed = TorqueShare(sources), sensed or Sensed()
-    if not sources and (control.led or not sensed.torque):
-        who = (
-            "the engine changes its speed by its own torque" if control.led else "nothing says the torque at the input"
-        )
-        raise UseError("cw.shifts.drive", [f"{who}: give sources, such as cw.shifts.EngineSource.of(engine)"])
+    asks = control.asks or ("" if control.always or sensed.torque else "nothing says the torque at the input")
+    if asks and not sources:
+        raise UseError("cw.shifts.drive", [f"{asks}: give sources, such as cw.shifts.EngineSource.of(engine)"])
     read, set_, last = _SensorReader(sensed, sim, control, share), dict[str, float](), sim.time
     while sim.time < until - 1e-9:
         time = sim.time
@@ -116,7 +120,7 @@ def drive(
         wanted = {} if set_ else control.commands
         now = read(pedal)
         wanted |= control.step(time, now)
-        step = min(period if control.shifting else resting, until - time)
+        step = min(period if control.shifting or control.always else resting, until - time)
         torques, left = share.signals(control, now, pedal, time - last, step)
         read.change, last = control.torque_change(now), time
         wanted |= torques

@@ -13,18 +13,16 @@ from clutchwork.base.quote import listed, quote
 from clutchwork.gearbox.motion import SPLIT
 from clutchwork.shifts.actuation import Actuation
 from clutchwork.shifts.exchange import ratio_of
+from clutchwork.shifts.lines import Line, at
 from clutchwork.shifts.profile import Trend
 from clutchwork.shifts.record import Measured, ShiftRecord
-from clutchwork.shifts.schedule import Line, at
 from clutchwork.shifts.settings import ShiftSettings
 from clutchwork.shifts.split_motion import SplitMotion, split_motion
 
 if TYPE_CHECKING:
     from clutchwork.gearbox.gearbox import Gearbox
-    from clutchwork.run.trajectory import Trajectory
     from clutchwork.shifts.plant import Plant
     from clutchwork.shifts.torque_sources import EngineSource, TorqueSource
-    from clutchwork.stepping.simulator import Simulator
 
 # rate at which an element is brought to equal speeds [1/s], within a tenth of that of the calls
 SYNCHRONISE = 10.0
@@ -70,7 +68,8 @@ class HybridController:
         mode: at the start, by default the first split of the shift table
         prefix: name of the Transmission
 
-    UseError where a machine is missing, or the mode is no split. What it did is in `records`.
+    `cw.shifts.drive` runs it, with `sensed=cw.shifts.Sensed(charge="battery.charge")`. UseError where a machine is
+    missing, or the mode is not a split. What it did is in `records`.
     """
 
     def __init__(
@@ -88,14 +87,17 @@ class HybridController:
         self.modes = [row for row in box.gears if box.combination(box.closed_in(row)).kind == SPLIT]
         missing = [name for name in box.machines if name not in machines]
         if missing or len(box.machines) != 2:
-            give = f"give sources for {listed(missing)}" if missing else f"{quote(box.name)} has not two machines"
+            give = f"give sources for {listed(missing)}" if missing else f"{quote(box.name)} does not have two machines"
             raise UseError(CALL, [give])
         self.mode = mode or next(iter(self.modes), "")
         if self.mode not in self.modes:
-            raise UseError(CALL, [f"{quote(self.mode)} is no split{near(self.mode, self.modes, listed(self.modes))}"])
+            raise UseError(
+                CALL, [f"{quote(self.mode)} is not a split{near(self.mode, self.modes, listed(self.modes))}"]
+            )
         self.box, self.machines, self.engine, self.settings, self.prefix = box, machines, engine, settings, prefix
         self.motions = {row: split_motion(box, box.closed_in(row), plant.inertias) for row in self.modes}
         self.records: list[ShiftRecord] = []
+        self.always, self.torque_factor, self.blip = True, 1.0, 0.0
         self.phase, self.target = "drive", ""
         self._since = self._called = 0.0
         self._output = Trend()
@@ -109,15 +111,25 @@ class HybridController:
         return self.phase != "drive"
 
     @property
+    def asks(self) -> str:
+        """What it cannot do without `sources`: nothing, it has its own."""
+        return ""
+
+    def torque_change(self, _: Measured) -> float:
+        """Of others, which it does not ask."""
+        return 0.0
+
+    @property
     def commands(self) -> dict[str, float]:
         """All commands of elements by signal."""
         return dict(self._do.sent)
 
-    def step(self, time: float, now: Measured, charge: float) -> dict[str, float]:
-        """Commands by signal at a time [s]: of elements, machines and engine; charge, of the battery.
+    def step(self, time: float, now: Measured) -> dict[str, float]:
+        """Commands by signal at a time [s]: of elements, machines and engine.
 
         The throttle of `now` is the driver's, below zero where he brakes with the machines.
         """
+        charge = self.settings.charge if now.charge is None else now.charge
         period, self._called = max(0.0, time - self._called), time
         self._output.follow(now.output_speed, period)
         with_, speeds = self.settings, (now.input_speed, now.output_speed)
@@ -211,39 +223,3 @@ class HybridController:
     def _next(self, phase: str, time: float) -> None:
         self.phase, self._since = phase, time
         self.records[-1].phases.append((time, phase))
-
-
-def drive_hybrid(
-    sim: Simulator,
-    control: HybridController,
-    until: float,
-    *,
-    throttle: Callable[[float], float] | str,
-    charge: str = "",
-    also: Callable[[float, Simulator], Mapping[str, float]] | None = None,
-    period: float = 0.01,
-) -> Trajectory:
-    """Run a driveline with a power split under its controller, up to a time [s]; the trajectory up to there.
-
-    Parameters: throttle, of the driver over time, 0 to 1, below 0 where machines brake, or a signal; charge, signal of
-    the charge of the battery, none: it is the one that is aimed at; also, what else is set, such as brakes; period,
-    from one call of the controller to the next [s].
-    """
-    box, prefix = control.box, control.prefix
-    ends = [f"{prefix}.{member}.speed" for member in (box.input, box.output)]
-    names = [*ends, *(f"{prefix}.{element.name}.slip" for element in box.elements)]
-    set_: dict[str, float] = {}
-    while sim.time < until - 1e-9:
-        first, second, *slips = sim[names].tolist()
-        pedal = float(sim[throttle]) if isinstance(throttle, str) else float(throttle(sim.time))
-        by_element = {element.name: slip for element, slip in zip(box.elements, slips, strict=True)}
-        now = Measured(first, second, 0.0, pedal, by_element)
-        held = float(sim[charge]) if charge else control.settings.charge
-        wanted = ({} if set_ else control.commands) | control.step(sim.time, now, held)
-        wanted |= also(sim.time, sim) if also else {}
-        changed = {name: value for name, value in wanted.items() if set_.get(name) != value}
-        if changed:
-            sim.set(changed)
-            set_ |= changed
-        sim.advance(min(period, until - sim.time))
-    return sim.run

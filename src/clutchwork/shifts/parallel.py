@@ -35,8 +35,8 @@ JOLT = 0.25
 USUAL = 0.015
 # share of the inertia phase in which the torque of the engine comes back
 COMES_BACK = 0.4
-# torque that a downshift needs [N m] from which on the engine is asked for all of its throttle
-NEEDED = 20.0
+# torque that is lacking at the input of a downshift [N m], from which on all of `blip` is asked for
+WHOLE = 50.0
 # torque of an element that counts as none, as a share of that of the input
 NOTHING = 1e-3
 # part of the inertia phase in which the loop has settled and the slip is not over yet
@@ -330,9 +330,9 @@ class ParallelSequence:
         self._output = Trend(now.output_speed)
         change = -float(one.input @ self._start)
         time, longer = max(with_.inertia_time, 1e-9), abs(change) / max(with_.usual_step, 1e-9)
-        # what the torque of the input itself brings there, and a pull of the elements that close up to a limit
+        # what the torque of the input itself brings there, or a pull of the elements that close up to a limit
         at_hand = AT_HAND * max(0.0, copysign(now.input_torque, change * now.input_torque))
-        at_hand += with_.pull if change > 0.0 else 0.0
+        at_hand = max(at_hand, with_.pull if change > 0.0 else 0.0)
         if at_hand > 0.0 and change:
             kinetic = float(self._start @ one.inertia @ self._start) / abs(change)
             longer = max(longer, 1.5 * kinetic / at_hand / time)
@@ -368,10 +368,12 @@ class ParallelSequence:
     def _ask(self, work: float, now: Measured) -> None:
         """Torque of the engine for a downshift in which elements would pull the input up too hard: equation (22)."""
         lever = float(self._start @ self.one.input)
-        needed = work / lever if lever < 0.0 else 0.0
-        given = now.input_torque if now.demand is None else now.demand
-        self.lacking = max(0.0, needed - self.with_.pull - given)
-        self.blip = min(self.with_.blip, self.lacking / max(needed, NEEDED))
+        lacks = (work / lever if lever < 0.0 else 0.0) - self.with_.pull
+        driver = now.input_torque if now.demand is None else now.demand
+        # it needs its time to come back before speeds meet
+        left = min(1.0, (1.0 - min(1.0, self._passed / self._time)) / COMES_BACK)
+        self.lacking = left * max(0.0, lacks - driver)
+        self.blip = left * self.with_.blip * min(1.0, max(0.0, lacks - now.input_torque) / WHOLE)
 
     def _profile(self, x: float) -> tuple[Array, Array]:
         """The slips that are wanted at a share of the time [rad/s], and their rate [rad/s2]: equation (16)."""

@@ -10,7 +10,6 @@ from clutchwork.shifts.exchange import FRICTION, SLEEVES
 
 if TYPE_CHECKING:
     from clutchwork.gearbox.gearbox import Gearbox
-    from clutchwork.shifts.schedule import ShiftSchedule
     from clutchwork.shifts.shift_map import ShiftMap
 
 
@@ -69,9 +68,7 @@ class Halves:
         return [between, target]
 
 
-def expected(
-    layout: Halves, schedule: ShiftSchedule | ShiftMap, gear: str, output_speed: float, throttle: float
-) -> str:
+def expected(layout: Halves, schedule: ShiftMap, gear: str, output_speed: float, throttle: float) -> str:
     """The gear to wait on the free shaft: the neighbour whose line is nearer, in the ratio of speeds.
 
     A speed that moves on without a jump passes the middle between both lines before it crosses one of them, so the gear
@@ -80,11 +77,10 @@ def expected(
     forward = layout.forward
     if gear not in forward:
         return forward[0] if layout.clutch[forward[0]] != layout.clutch[gear] else forward[1]
-    lines = schedule.output_speeds(throttle)
     place = forward.index(gear)
     up = forward[place + 1] if place + 1 < len(forward) else None
     down = forward[place - 1] if place else None
     if up is None or down is None:
         return up or down or gear
-    high, low = lines[gear, up], lines[gear, down]
+    high, low = schedule.speed((gear, up), throttle), schedule.speed((gear, down), throttle)
     return up if output_speed > (high * low) ** 0.5 else down

@@ -25,6 +25,7 @@ class Measured:
         sleeves: position of dog clutches, 0 out, 1 in
         oil: temperature of the oil [K], for the inhibits of a `ShiftMap`
         grade: of the road, above 0 uphill [rad], for the same
+        charge: of the battery, for a `HybridController`; none: the one that is aimed at
         demand: torque at the input that the driver asks for [N m], for a dual-clutch gearbox; none: `input_torque`
         least, most: torque that engine and motors can give there at present [N m], for the same
     """
@@ -37,6 +38,7 @@ class Measured:
     sleeves: Mapping[str, float] = field(default_factory=dict)
     oil: float = 353.15
     grade: float = 0.0
+    charge: float | None = None
     demand: float | None = None
     least: float = -inf
     most: float = inf

@@ -15,17 +15,21 @@ from clutchwork.base.errors import ModelError, Problem, UseError
 from clutchwork.base.frozen import frozen
 from clutchwork.base.paths import path_of
 from clutchwork.base.quote import listed, quote
-from clutchwork.shifts.schedule import GAP, Line, Pair, at, hunting
+from clutchwork.shifts.lines import Line, at
 
 if TYPE_CHECKING:
     from clutchwork.gearbox.gearbox import Gearbox
     from clutchwork.shifts.record import Measured
 
+Pair = tuple[str, str]
 # what lines are speeds of
 INPUT, OUTPUT, VEHICLE = "input", "output", "vehicle"
 # SI per unit of a speed in a table
 UNITS = {"rad/s": 1.0, "rpm": pi / 30.0, "1/min": pi / 30.0, "m/s": 1.0, "km/h": 1.0 / 3.6, "mph": 0.44704}
 LINEAR = ("m/s", "km/h", "mph")
+# least gap between a line up and the one back, as a share of the speed up: what sensors and a drive shaft that rings
+# shake a speed by
+GAP = 0.01
 FITS = 'give rad/s or rpm for "input" and "output", m/s, km/h or mph for "vehicle"'
 
 
@@ -46,9 +50,9 @@ class Inhibit:
 class ShiftMap:
     """When to shift, by a line of its own for each pair of gears: speed over the pedal, 0 to 1.
 
-    Use it where a `ShiftSchedule` with two lines for all gears is too little: as the `schedule` of a `ShiftController`.
-    Shift ("1", "2") is made above its line, ("2", "1") below its own; lines are linear between their points and held
-    outside. Where a line leads over several gears they are skipped, if `skips` says so.
+    Use it as the `schedule` of a `ShiftController`; `two_lines` makes one for all gears. Shift ("1", "2") is made above
+    its line, ("2", "1") below its own; lines are linear between their points and held outside. Where a line leads over
+    several gears they are skipped, if `skips` says so.
 
     Parameters:
         ratios: of the forward gears, first gear first
@@ -86,6 +90,18 @@ class ShiftMap:
             raise ModelError(found, "shift map")
 
     @classmethod
+    def two_lines(
+        cls, box: Gearbox, up: Line, down: Line, *, gears: Sequence[str] = (), skips: bool = True
+    ) -> ShiftMap:
+        """A map with one line up and one down for all forward gears of a gearbox, or for some of them.
+
+        Parameters: up and down, speeds of the input [rad/s] over the pedal. ModelError where gears hunt.
+        """
+        used = {gear: ratio for gear, ratio in _forward(box).items() if not gears or gear in gears}
+        lines = {way: line for pair in pairwise(used) for way, line in ((pair, up), (pair[::-1], down))}
+        return cls(used, lines, INPUT, skips=skips)
+
+    @classmethod
     def from_csv(
         cls, path: str | Path, box: Gearbox, *, of: str = OUTPUT, unit: str = "rad/s", **more: object
     ) -> ShiftMap:
@@ -101,8 +117,7 @@ class ShiftMap:
         rows, lines = _rows(path_of("ShiftMap.from_csv", path, "map.csv")), dict[Pair, list[tuple[float, float]]]()
         for pair, pedal, speed in rows:
             lines.setdefault(pair, []).append((pedal, speed * UNITS[unit]))
-        forward = sorted((gear for gear, ratio in box.ratios.items() if ratio > 0.0), key=lambda g: -box.ratios[g])
-        used = {gear: box.ratios[gear] for gear in forward if any(gear in pair for pair in lines)}
+        used = {gear: ratio for gear, ratio in _forward(box).items() if any(gear in pair for pair in lines)}
         sorted_lines = {pair: tuple(sorted(points)) for pair, points in lines.items()}
         return cls(used, sorted_lines, of, **more)  # type: ignore[arg-type]
 
@@ -126,10 +141,6 @@ class ShiftMap:
         else:
             value = at(self.lines[pair], pedal)
         return value / {INPUT: self.ratios[pair[0]], OUTPUT: 1.0, VEHICLE: self.per_output or 1.0}[self.of]
-
-    def output_speeds(self, pedal: float) -> dict[Pair, float]:
-        """Speed of the output [rad/s] at which each shift to the next gear is made at a pedal, up and down."""
-        return {pair: self.speed(pair, pedal) for pair in self.lines}
 
     def _step(self, order: Sequence[str], place: int, now: Measured) -> int:
         here, speed = order[place], now.output_speed
@@ -164,14 +175,20 @@ class ShiftMap:
                 yield Problem(name, "", "has pedals that do not rise", remedy="give each pedal once, in rising order")
 
     def _hunting(self) -> Iterator[Problem]:
-        """An upshift must leave the output above the line down, and no line may cross the one of the next gear."""
+        """No line back above a line up, (23) of docs/theory/shifts.md, and no line up above that of the next gear.
+
+        The worst pedal of each pair is named.
+        """
         gears = list(self.ratios)
         ends = {self.kickdown, nextafter(self.kickdown, 0.0)} if self.kickdown <= 1.0 else set[float]()
         pedals = sorted({point[0] for line in self.lines.values() for point in line} | {1.0} | ends)
-        for (lower, higher), pedal, up, down in hunting(gears, pedals, self.output_speeds, self.gap):
-            fault = f"hunts at pedal {pedal:g}: up at {up:.4g} rad/s of the output, down at {down:.4g}"
-            remedy = f"keep the line down {self.gap:.0%} below the line up, or give another `gap`"
-            yield Problem(f"shifts {lower}-{higher}-{lower}", "", fault, remedy=remedy)
+        for lower, higher in pairwise(gears):
+            seen = [(p, self.speed((lower, higher), p), self.speed((higher, lower), p)) for p in pedals]
+            pedal, up, down = max(seen, key=lambda one: one[2] - (1.0 - self.gap) * one[1])
+            if down > (1.0 - self.gap) * up:
+                fault = f"hunts at pedal {pedal:g}: up at {up:.4g} rad/s of the output, down at {down:.4g}"
+                remedy = f"keep the line down {self.gap:.0%} below the line up, or give another `gap`"
+                yield Problem(f"shifts {lower}-{higher}-{lower}", "", fault, remedy=remedy)
         for lower, higher, after in zip(gears, gears[1:], gears[2:], strict=False):
             crossed = [p for p in pedals if self.speed((higher, after), p) <= self.speed((lower, higher), p)]
             if crossed:
@@ -179,6 +196,11 @@ class ShiftMap:
                     f"is above that of {higher}-{after} at pedal {crossed[0]:g}, so that {higher} is never driven in"
                 )
                 yield Problem(f"line {lower}-{higher}", "", fault, remedy="order the lines up by their gears")
+
+
+def _forward(box: Gearbox) -> dict[str, float]:
+    """Ratios of the forward gears, first gear first."""
+    return dict(sorted(((gear, ratio) for gear, ratio in box.ratios.items() if ratio > 0.0), key=lambda one: -one[1]))
 
 
 def _rows(path: Path) -> list[tuple[Pair, float, float]]:

@@ -9,11 +9,11 @@ from typing import TYPE_CHECKING
 from clutchwork.base.classes import dataclass
 from clutchwork.base.errors import UseError
 from clutchwork.base.quote import quote
-from clutchwork.shifts.schedule import Line, at
+from clutchwork.shifts.lines import Line, at
 
 if TYPE_CHECKING:
     from clutchwork.elements.engine import Engine
-    from clutchwork.shifts.controller import ShiftController
+    from clutchwork.shifts.drive import Controller
     from clutchwork.shifts.record import Measured
 
 
@@ -131,9 +131,9 @@ class TorqueShare:
         return demand, sum(low for low, _ in ends), sum(high for _, high in ends)
 
     def signals(
-        self, control: ShiftController, now: Measured, pedal: float, passed: float, period: float
+        self, control: Controller, now: Measured, pedal: float, passed: float, period: float
     ) -> tuple[dict[str, float], float]:
-        """Values by signal, and the throttle that is left for an engine that is no source, 0 to 1.
+        """Values by signal, and the throttle that is left for an engine beside the sources, 0 to 1.
 
         What is asked for is a change of the torque at the input, below zero a reduction: `control.torque_change`.
         Parameters: passed, time since the last call, period, to the next one [s].
