@@ -73,7 +73,7 @@ class DualClutchShift:
 
 
 class DualClutch:
-    """Drives a dual-clutch gearbox: one gear carries, the next one waits on the other shaft.
+    """Drives a dual-clutch gearbox: one gear transmits, the next one is preselected on the other shaft.
 
     Use it for launches and shifts under power of a `cw.Transmission` whose gears are one of two clutches and one
     synchroniser each. Where the clutch that comes slips the way of the torque it takes the torque over first, and the
