@@ -43,9 +43,9 @@ def index(folder: Path, served: Path) -> None:
         project = re.sub(r"[-_.]+", "-", path.name.partition("-")[0]).lower()
         (served / project).mkdir(parents=True, exist_ok=True)
         (served / project / path.name).hardlink_to(path)
-    for project in served.iterdir():
-        links = [f'<a href="{html.escape(path.name)}">{html.escape(path.name)}</a>' for path in project.iterdir()]
-        (project / "index.html").write_text("<!doctype html>\n" + "\n".join(links), "utf-8")
+    for place in served.iterdir():
+        links = [f'<a href="{html.escape(path.name)}">{html.escape(path.name)}</a>' for path in place.iterdir()]
+        (place / "index.html").write_text("<!doctype html>\n" + "\n".join(links), "utf-8")
 
 
 def called(*command: str | Path, **settings: str) -> None:

@@ -40,7 +40,7 @@ def test_an_interrupted_search_does_not_speak_for_all_samples():
     found = caught.value.calibration
     assert not found.whole
     assert not found.feasible
-    assert "samples of production alone" in str(found)
+    assert "samples of production only" in str(found)
     assert "samples of production that were not run" in found.message
 
 

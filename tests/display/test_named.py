@@ -331,3 +331,43 @@ def test_names_may_hold_what_a_wildcard_is_made_of() -> None:
     # the name itself counts
     check(run, run.plot("c*.torque"), ["c*.torque"])
     check(run, run.plot("c?.torque"), ["c*.torque", "cx.torque"])
+
+
+@pytest.mark.parametrize(("given", "millimetres"), [("single column", 88.0), ("double column", 180.0), (75, 75.0)])
+def test_a_picture_has_the_width_that_is_asked_for(discs: cw.Trajectory, given: Any, millimetres: float) -> None:
+    for figure in (
+        discs.plot("*.speed", "c1.torque", width=given),
+        discs.plot(width=given),
+        cw.compare({"a": discs, "b": discs}, "*.speed", width=given),
+    ):
+        assert figure.get_figwidth() * 25.4 == pytest.approx(millimetres)
+        figure.draw_without_rendering()
+        # no legend beside or below the picture
+        legends = [axes.get_legend().get_window_extent() for axes in figure.axes if axes.get_legend()]
+        assert all(box.x1 <= figure.bbox.x1 and box.y1 <= figure.bbox.y1 for box in legends)
+
+
+@pytest.mark.parametrize("given", ["narrow", 20.0, True, float("inf")])
+def test_a_width_that_is_none(discs: cw.Trajectory, given: Any) -> None:
+    with pytest.raises(cw.UseError, match=r"width is .*give 'single column', 'double column', or at least 75 mm"):
+        discs.plot("c1.torque", width=given)
+
+
+def test_settings_of_matplotlib_that_were_changed_stay(discs: cw.Trajectory) -> None:
+    import matplotlib
+    from matplotlib import cycler
+
+    own = {
+        "font.size": 11.0,
+        "axes.labelsize": 12.0,
+        "lines.linewidth": 3.0,
+        "axes.prop_cycle": cycler(color=["k", "r"]),
+    }
+    plain = discs.plot("engine.speed").axes[0]
+    with matplotlib.rc_context(own):
+        axes = discs.plot("engine.speed", "load.speed").axes[0]
+    assert [line.get_color() for line in axes.get_lines()[:2]] == ["k", "r"]
+    assert axes.get_lines()[0].get_linewidth() == 3.0
+    assert (axes.yaxis.label.get_size(), plain.yaxis.label.get_size()) == (12.0, 8.0)
+    # what was not changed has the look of all pictures
+    assert not axes.spines["top"].get_visible()

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import importlib
-import os
 import re
 import shutil
 import sys
@@ -17,14 +16,6 @@ import clutchwork as cw
 ROOT = Path(__file__).resolve().parents[2]
 GUIDE = sorted((ROOT / "docs" / "guide").glob("*.md"))
 THEORY = sorted((ROOT / "docs" / "theory").glob("*.md"))
-PAGES = [
-    ROOT / "README.md",
-    ROOT / "CONTRIBUTING.md",
-    *ROOT.glob("docs/*.md"),
-    *GUIDE,
-    *THEORY,
-    *ROOT.glob("decisions/*.md"),
-]
 SOURCES = [
     path
     for folder in ("src", "cpp", "tests", "interfaces")
@@ -127,25 +118,6 @@ def test_every_hook_is_explained() -> None:
     page = (ROOT / "docs" / "extend.md").read_text(encoding="utf-8")
     names = [name for hook in HOOKS for name in hook.names]
     assert [name for name in names if f'"{name}"' not in page and f"`{name}`" not in page] == []
-
-
-@pytest.mark.parametrize("path", PAGES, ids=named)
-def test_links_lead_somewhere(path: Path) -> None:
-    links = re.findall(r"\]\(([^)#\s]+)(?:#[^)]*)?\)", path.read_text(encoding="utf-8"))
-    local = [link for link in links if "://" not in link]
-    assert [link for link in local if not (path.parent / link).exists()] == []
-
-
-@pytest.mark.parametrize("path", sorted((ROOT / "docs" / "elements").glob("*.md")), ids=named)
-def test_links_of_words_about_an_element_lead_somewhere_from_its_page(path: Path) -> None:
-    """Its page is made in docs/reference/elements."""
-    links = re.findall(r"\]\(([^):#\s]+)(?:#[^)]*)?\)", path.read_text(encoding="utf-8"))
-    # those of other elements are made beside it
-    others = [link for link in links if "/" not in link]
-    assert [link for link in others if not (path.parent / link).exists()] == []
-    place = ROOT / "docs" / "reference" / "elements"
-    known = [Path(os.path.normpath(place / link)) for link in links if "/" in link]
-    assert [str(link) for link in known if not link.exists()] == []
 
 
 def labels(path: Path) -> list[str]:

@@ -44,7 +44,7 @@ def test_a_few_of_a_thousand_signs_do_no_harm(seed: int) -> None:
         assert result[name].value == pytest.approx(true, rel=0.1)
     if np.min(turned, initial=0.0) < -0.05:
         assert "the noise of the slip turned the sign" in result.notes
-        with pytest.raises(FitError, match="likely noise of the slip turned the sign of"):
+        with pytest.raises(FitError, match="likely noise of the slip reversed the sign of"):
             fit_law(cw.Stribeck(static=0.2, kinetic=0.1, speed=1.0, viscous=1e-4), **data, rest=0.0)
 
 

@@ -155,7 +155,7 @@ def test_noise_of_the_slip_above_rest_is_recognised() -> None:
     data = rig_data.measured(law)
     noisy = data.slip + 0.03 * np.random.default_rng(5).standard_normal(len(data.slip))
     result = fit_law(law, data.time, noisy, data.torque, data.load, free=["kinetic"])
-    assert "the noise of the slip turned the sign of" in result.notes
+    assert "the noise of the slip reversed the sign of" in result.notes
     assert 0.06 < result.rest < 0.2
     assert result["kinetic"].value == pytest.approx(law.kinetic, rel=0.02)
     with pytest.raises(FitError, match=r"leave out `rest`, or give 0\.0"):

@@ -167,7 +167,7 @@ def test_an_interrupted_step_is_not_taken_for_another_one(path: Path, monkeypatc
         context.setattr(Process, "_answer", interrupted)
         with pytest.raises(KeyboardInterrupt):
             sim.advance(0.1)
-    with pytest.raises(cw.SimulationError, match=r"FMU 'valve' was interrupted before it had answered: begin anew"):
+    with pytest.raises(cw.SimulationError, match=r"FMU 'valve' was interrupted before it had answered: start again"):
         sim.advance(0.3)
     sim.reset()
     sim.advance(0.45)

@@ -70,7 +70,7 @@ def test_a_contact_at_its_capacity_and_one_that_breaks_away(run):
     d.add(cw.Brake("b1", shaft=a, normal_force=100.0, **LINING))
     lin = cw.linearise(d)
     assert lin.contacts == {"b1": "locked"}
-    assert any("b1 holds all that it can, 12 N m: it is taken as locked" in note for note in lin.notes)
+    assert any("b1 is at its capacity, 12 N m: it is taken as locked" in note for note in lin.notes)
     away = next(event for event in run.events if event.before == "locked" and event.after in ("forward", "backward"))
     lin = cw.linearise(run, at=away.time)
     assert any("c1 has no slip but is not locked" in note for note in lin.notes)

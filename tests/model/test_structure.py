@@ -310,6 +310,17 @@ def test_contradictory_initial_speeds_are_named():
     assert message.startswith('shaft "b": speed = 30 rad/s: contradicts the initial speed of shaft "a", which gives 25')
 
 
+def test_a_speed_that_the_gear_at_the_start_gives_is_not_called_one_that_was_written():
+    d = cw.Driveline()
+    engine, axle = d.shaft("engine", inertia=0.2, speed=150.0), d.shaft("axle", inertia=1.0)
+    car = d.mass("car", mass=1300.0, speed=6.0)
+    d.add(cw.Transmission("box", gearbox="zf-8hp70", input=engine, output=axle, gear="3"))
+    d.add(cw.RollingWheel("wheel", shaft=axle, mass=car, radius=0.3))
+    messages = _messages(d)
+    assert any("follows from the start of 'box', and contradicts the initial speed of" in one for one in messages)
+    assert all("give the speed of one side alone at the start" in one for one in messages if "box." in one)
+
+
 def test_rounded_initial_speeds_are_no_contradiction():
     d = cw.Driveline()
     a, b = d.shaft("a", inertia=1.0, speed=100.0), d.shaft("b", inertia=1.0, speed=33.33333)

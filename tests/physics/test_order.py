@@ -23,7 +23,7 @@ MODELS = {"rodas5p": (30.0, 200.0), "dopri5": (120.0, 5.0)}
 
 
 def driveline(method: str, events: bool) -> cw.Driveline:
-    """Two discs on a spring, driven by a sine, with exponential friction: on a third disc it locks and lets go."""
+    """Two discs on a spring, driven by a sine, with exponential friction: on a third disc it locks and breaks away."""
     stiffness, drag = MODELS[method]
     d = cw.Driveline("order")
     a, b = d.shaft("a", inertia=0.3, speed=60.0), d.shaft("b", inertia=0.5, speed=20.0 if events else 50.0)

@@ -215,7 +215,7 @@ def test_a_jam_beside_a_light_shaft_has_its_own_sentence() -> None:
 
 @cache
 def _run() -> Any:
-    """A clutch that locks and lets go, springs, a gear and a prescribed speed."""
+    """A clutch that locks and breaks away, springs, a gear and a prescribed speed."""
     d = cw.Driveline("checked")
     a, b, c, e = (d.shaft(name, inertia=0.3, **({"speed": 30.0} if name == "a" else {})) for name in "abce")
     d.add(cw.Torque("drive", shaft=a, torque=cw.Sine(amplitude=40.0, frequency=4.0)))

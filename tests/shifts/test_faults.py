@@ -46,7 +46,7 @@ def test_each_element_fails_once_in_each_gear(name: str) -> None:
         made = box.combination(sorted(closed ^ {one.element}))
         assert one.makes == made.kind
         assert one.ratio == (None if made.ratio is None else pytest.approx(float(made.ratio)))
-        # one element less frees a motion, unless it carries nothing
+        # one element less frees a motion, unless it transmits nothing
         if one.fault == "missing" and abs(box.state(one.gear).torques[one.element]) > 1e-9:
             assert one.ratio is None
 

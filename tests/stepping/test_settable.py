@@ -164,10 +164,10 @@ def test_a_locked_contact_is_decided_anew() -> None:
 @pytest.mark.parametrize(
     ("name", "value", "words"),
     [
-        ("a.inertia", 2.0, "is an inertia: to change it would make energy of the motion out of nothing"),
-        ("a.speed", 2.0, "is a value at the start of a run, which is over"),
-        ("k.stiffness", 60.0, "decides how much energy the element stores"),
-        ("k.initial_twist", 0.1, "is a value at the start"),
+        ("a.inertia", 2.0, "is an inertia: changing it would create kinetic energy"),
+        ("a.speed", 2.0, "is an initial value, and the run has started"),
+        ("k.stiffness", 60.0, "determines the energy that the element stores"),
+        ("k.initial_twist", 0.1, "is an initial value"),
         ("c.tolerance", 0.1, "says when a contact may lock"),
         (
             "c.friction",

@@ -75,7 +75,7 @@ def test_a_study_goes_on_and_keeps_what_is_there(tmp_path: Path) -> None:
         if done >= 120:
             raise KeyboardInterrupt
 
-    with pytest.raises(cw.StudyInterrupted, match=r"of 300 variants are in .*; the same call goes on") as stop:
+    with pytest.raises(cw.StudyInterrupted, match=r"of 300 variants are in .*; the same call continues") as stop:
         run(tmp_path, threads=1, progress=until)
     kept, before = stop.value.study, stamps(tmp_path)
     assert 120 <= len(kept) < 300
@@ -150,7 +150,7 @@ def test_nothing_else_is_added_to_a_study(tmp_path: Path, name: str) -> None:
     with pytest.raises(cw.StudyError) as error:
         run(tmp_path, **other)
     assert "holds a study of something else, so nothing can be added to it" in str(error.value)
-    assert "give another folder, or what it was begun with" in str(error.value)
+    assert "give another folder, or the definition that it was started with" in str(error.value)
     assert [text for text in texts if text not in str(error.value)] == []
 
 

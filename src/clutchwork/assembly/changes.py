@@ -100,7 +100,7 @@ def anew(
     count = len(made["independent"])
     if count != speeds:
         message = f"makes {count} speeds independent, where {speeds} were"
-        remedy = "build a driveline of its own for it: its rigid rows are others"
+        remedy = "build a new driveline for it: its rigid constraints differ"
         raise ModelError([Problem(", ".join(changes), "", message, remedy=remedy)], model.name)
     return model, made, found.advice
 

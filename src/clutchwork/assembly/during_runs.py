@@ -22,28 +22,26 @@ class Stays(NamedTuple):
 
 
 NEW_RUN = "give it to the model, and start a new run"
-OTHER = Stays("changes what the driveline is made of", "build another driveline for it")
-INERTIA = Stays("is an inertia: to change it would make energy of the motion out of nothing", NEW_RUN)
+OTHER = Stays("changes the structure of the driveline", "build another driveline for it")
+INERTIA = Stays("is an inertia: changing it would create kinetic energy", NEW_RUN)
 SIGNAL = Stays("is part of a signal", "set the signal itself to a number")
 # by the first words of the name of an array
 STAYS = {
     "inertia": INERTIA,
     "mass": INERTIA,
-    "basis": Stays("is a rigid ratio: to change it would make speeds jump", "build another driveline for it"),
-    "initial": Stays("is a value at the start of a run, which is over", NEW_RUN),
-    "shared": Stays(
-        "is part of the heat that a thermal node holds: to change it would make heat out of nothing", NEW_RUN
-    ),
-    "heat": Stays("says where heat goes, which stays so while a run goes on", NEW_RUN),
-    "points": Stays("is a table, which stays as it is while a run goes on", NEW_RUN),
+    "basis": Stays("is a rigid ratio: changing it would make speeds jump", "build another driveline for it"),
+    "initial": Stays("is an initial value, and the run has started", NEW_RUN),
+    "shared": Stays("is part of the heat that a thermal node holds: changing it would create heat", NEW_RUN),
+    "heat": Stays("says where heat goes, which is fixed during a run", NEW_RUN),
+    "points": Stays("is a table, which is fixed during a run", NEW_RUN),
     "segment": SIGNAL,
     "input": SIGNAL,
     "contact_law": Stays("is another friction law, with states of its own", NEW_RUN),
-    "contact": Stays("says when a contact may lock, which stays so while a run goes on", NEW_RUN),
+    "contact": Stays("says when a contact may lock, which is fixed during a run", NEW_RUN),
 }
-STORES = Stays("decides how much energy the element stores: to change it would make some out of nothing", NEW_RUN)
-VARIANT = Stays("selects a variant, which stays so while a run goes on", NEW_RUN)
-NOTHING = Stays("acts on nothing while a run goes on", NEW_RUN)
+STORES = Stays("determines the energy that the element stores: changing it would create energy", NEW_RUN)
+VARIANT = Stays("selects a variant, which is fixed during a run", NEW_RUN)
+NOTHING = Stays("has no effect during a run", NEW_RUN)
 
 
 def numbers(present: SystemData, new: SystemData) -> dict[int, float]:

@@ -187,7 +187,7 @@ class SystemParameters(Mapping[str, SystemParameter]):
 
     def __getitem__(self, name: str) -> SystemParameter:
         if target(owners_of(self._system), name) is None:
-            raise KeyError(f"{name!r} is nothing that may be changed{near(name, self)}")
+            raise KeyError(f"{name!r} is not a number that can be changed{near(name, self)}")
         return parameter(self._system, name)
 
     def __iter__(self) -> Iterator[str]:

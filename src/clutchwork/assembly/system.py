@@ -70,7 +70,7 @@ class System(SystemData):
         """The System of the same driveline with other numbers, initial values and signals.
 
         Parameters: changes, values by name: "engine.inertia", "c1.gain", "row1.ratio", "c1.friction.kinetic", or
-        "c1.pressure", a number, one with a unit, "2 bar", or a signal. ModelError names all that is unknown or out of
+        "c1.pressure", a number, one with a unit, "2 bar", or a signal. ModelError names everything unknown or out of
         bounds at once.
 
         The result is that of assembling a driveline with these values, bit for bit. What it warns of is new.

@@ -61,7 +61,7 @@ def calibrate(
     options: Options | None = None,
     **changes: Unpack[OptionFields],
 ) -> Calibration:
-    """Find the numbers of a driveline at which a goal is least and limits hold, by exact gradients of its runs.
+    """Find the numbers of a driveline that minimise an objective within limits, by exact gradients of its runs.
 
     Parameters: t_end [s], or with a unit, options and their fields by name are those of `simulate`, with rtol 1e-8
     unless it is given; free, bounds (low, high) by name, in SI or with units: names of `cw.differentiable`, a range of
@@ -74,7 +74,7 @@ def calibrate(
     scatter, what differs in production, given as free is: limits then hold in all of so many samples, and in all
     corners where no more than four scatter; the goal is the mean of the first nine samples, or with robust="worst" that
     of the worst one, as it must be where the goal has several values. seed, of starts and samples; tolerance and
-    iterations, of the solver; file, a path in which what was found is kept: the same call goes on from there, and with
+    iterations, of the solver; file, a path in which the result is kept: the same call continues from there, and with
     more iterations where it was not solved. progress, True for a bar of tqdm, or a function of (points looked at, the
     most there can be).
 

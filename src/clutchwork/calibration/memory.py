@@ -63,7 +63,7 @@ def _plain(one: Outcome) -> dict[str, Any]:
 
 
 def _read(path: Path, key: str) -> dict[int, Outcome]:
-    remedy = "give another file, or remove it to begin anew"
+    remedy = "give another file, or remove it to start again"
     try:
         data = json.loads(path.read_text(encoding="utf-8"))
         fits = data["format"] == FORMAT

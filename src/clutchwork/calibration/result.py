@@ -47,13 +47,13 @@ class CalibrationInterrupted(KeyboardInterrupt):
 class Calibration(CalibrationRecord):
     """What `cw.calibrate` found.
 
-    `values` are the numbers by name, `system` the model with them. `solved` says whether all limits hold and no
-    small change makes the goal less; `message` says what stands in the way. `print(found)` shows it all.
+    `values` are the numbers by name, `system` the model with them. `solved` says whether all limits hold and no small
+    change lowers the objective; `message` gives any reason not to use the values. `print(found)` shows it all.
     """
 
     @property
     def message(self) -> str:
-        """What stands in the way of using the values, one line each; empty when nothing does."""
+        """Reasons not to use the values, one line each; empty when there are none."""
         return "\n".join(words.faults(self))
 
     @property
@@ -84,21 +84,21 @@ class Calibration(CalibrationRecord):
     # -------------------------------------------------------------------------------------------------- what to do next
 
     def plot(self, *signals: Any, path: str | Path | None = None) -> Picture:
-        """Draw signals before and after; without names those that goal and limits are about. Needs matplotlib.
+        """Draw signals before and after; without names those of objective and limits. Needs matplotlib.
 
         Parameters: signals, as `cw.compare` takes them; path, of a picture that is written.
         """
         return before_and_after(self, signals, path)
 
     def front(self, limit: str, bounds: Sequence[Any], *, progress: Any = False) -> Front:
-        """The least goal for each bound of a limit, as of jerk over heat.
+        """The optimum of the objective for each bound of a limit, such as jerk over heat.
 
         Parameters: limit, its name; bounds, of its upper side, or of the lower one where it has no upper one.
         """
         return front(self, self.limit(limit), bounds, progress)
 
     def verify(self, samples: int = 1000, *, seed: int = 1, threads: int | None = None) -> Verified:
-        """Run production samples that the search has not seen, and say which break a limit.
+        """Run production samples that the search has not seen, and report those that violate a limit.
 
         Parameters: samples, how many; seed, of the draws; threads, how many runs go at once.
         """

@@ -284,7 +284,7 @@ def _column(given: TermData, column: Sequence[Tunable]) -> Rows:
 
 @explained("cw.jerk", shaft="'car'")
 def jerk(shaft: str, window: Any = WINDOW, between: Any = None) -> Jerk:
-    """The size of the jerk of a shaft [rad/s3] or a mass [m/s3]: all along the run, over windows.
+    """The magnitude of the jerk of a shaft [rad/s3] or a mass [m/s3] throughout the run, over windows.
 
     For `calibrate`; in a sweep it is the largest of a run.
 
@@ -322,7 +322,7 @@ def slope(signal: str) -> TableSlope:
 
 @explained("cw.squared_slope", signal="'c1.pressure'")
 def squared_slope(signal: str) -> SquaredSlope:
-    """The integral of the square of the slope of a table for `calibrate`: how restless a profile is.
+    """The integral of the square of the slope of a table for `calibrate`: how uneven a profile is.
 
     Parameters: signal, the name of the table, such as "c1.pressure".
     """

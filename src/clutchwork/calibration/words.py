@@ -96,7 +96,7 @@ def _effort(found: CalibrationRecord) -> str:
     if found.around < found.certificate.residual:
         said[-1] += " in a corner, of its gradients to all sides"
     if found.samples and not found.whole:
-        said.append(f"limits were looked at in {len(found.samples)} samples of production alone")
+        said.append(f"limits were looked at in {len(found.samples)} samples of production only")
     elif found.samples:
         hold = "hold in all samples" if found.feasible else "are broken in samples"
         said.append(f"limits {hold} of production, of which {len(found.samples)} decided")
@@ -108,7 +108,7 @@ def faults(found: CalibrationRecord) -> Iterator[str]:
     if not found.finished:
         yield "the search was interrupted: these are the best values so far"
     if not found.whole:
-        yield "limits may be broken in samples of production that were not run with these values: verify() runs them"
+        yield "limits may be violated in samples of production that were not run with these values: verify() runs them"
     elif not found.feasible and not any(one.broken for one in found.limits):
         yield "limits have no value in some samples of production, or the model is refused there: narrow the scatter"
     if not found.feasible:
@@ -122,13 +122,13 @@ def faults(found: CalibrationRecord) -> Iterator[str]:
                     f"bounds {_bounds(one)}: widen them or those of the free numbers, or give more starts"
                 )
     elif found.finished and not found.solved:
-        left = f"what is left of the gradient is {found.certificate.residual:.2g} of the goal"
+        left = f"the remaining gradient is {found.certificate.residual:.2g} of the goal"
         yield (
-            f"{left}, and a step to a neighbour may make it less: the search stopped before the least one; give more "
+            f"{left}, and a neighbour may be better: the search stopped before the optimum; give more "
             "iterations or starts, or search again from found.system"
         )
         if found.corner:
-            yield f"the goal has a corner there: {found.corner}"
+            yield f"the objective has a kink there: {found.corner}"
     for start in found.outcomes:
         if start.fault:
             yield f"start {start.number + 1} could not be used: {start.fault}"

@@ -31,7 +31,7 @@ def add_trust(parser: Any) -> None:
     parser.add_argument(
         "--trust",
         action="store_true",
-        help="the model may have FMUs, [[fmu]], whose libraries run with all that you may do",
+        help="the model may have FMUs, [[fmu]], whose libraries run with your permissions",
     )
 
 

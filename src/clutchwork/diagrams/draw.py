@@ -43,7 +43,7 @@ def diagram(
     path: str | Path | None = None,
     merged: bool = False,
 ) -> Diagram:
-    """A picture of a gearbox, laid out by itself, as SVG; notebooks show it. Needs no further package.
+    """A diagram of a gearbox as SVG, with automatic layout; notebooks show it. Needs no further package.
 
     Use it to see how a gearbox is built and where power goes in a gear.
 

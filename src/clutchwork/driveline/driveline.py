@@ -60,7 +60,7 @@ class Driveline:
     def simulation(self) -> dict[str, Any]:
         """Settings of its runs, to be changed: t_end [s] and fields of `Options`, as in [simulation] of a model file.
 
-        `simulate` takes from here what it is not given; `save` writes them.
+        `simulate` uses them where it is given nothing else; `save` writes them.
         """
         return self._model.settings
 
@@ -95,7 +95,7 @@ class Driveline:
 
     @property
     def housing(self) -> Node:
-        """What does not move: the base of brakes and the support of gears."""
+        """The fixed node: the base of brakes and the support of gears."""
         return HOUSING
 
     @explained("d.shaft")
@@ -167,7 +167,7 @@ class Driveline:
     def check(self) -> list[Problem]:
         """All mistakes of the model, an empty list when there is none.
 
-        What is allowed and rarely wanted, such as a friction law that can give energy away, is a `ModelWarning`.
+        What is allowed but rarely intended, such as a friction law that can generate energy, is a `ModelWarning`.
         """
         return list(self._looked_at().problems)
 
@@ -182,7 +182,7 @@ class Driveline:
         return found
 
     def hints(self) -> Hints:
-        """What an expert would say of the model before it runs, with numbers and a remedy; print it to read it.
+        """What an expert would point out in the model before it runs, with numbers and a remedy; print it to read it.
 
         Hints are neither the mistakes that `check` lists nor warnings. Those that a run shows are in
         `Trajectory.hints`. ModelError lists all mistakes.
@@ -231,7 +231,8 @@ class Driveline:
     ) -> Trajectory:
         """Assemble and run up to t_end [s], or "500 ms"; options as for `clutchwork.simulate`.
 
-        What is left out is that of `simulation`, so a driveline from a model file runs with the settings of its file.
+        Options that are left out come from `simulation`, so a driveline from a model file runs with the settings of its
+        file.
         """
         from clutchwork.run.simulation import simulate
 

@@ -13,7 +13,7 @@ from clutchwork.fmu_import.fmu import FMU
 
 # what says where it is, then what it is told
 KEYS = ("name", "path", "period", "inputs", "parameters", "time_limit")
-UNTRUSTED = "runs a library of another program with all that you may do"
+UNTRUSTED = "runs a library of another program with your permissions"
 
 
 def fmu(entry: Mapping[str, Any], name: str, folder: str, *, trust: bool) -> FMU | list[Problem]:

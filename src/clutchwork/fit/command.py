@@ -41,7 +41,7 @@ def add_command(subparsers: Any) -> None:
         fit_command,
         "parameters of a friction law from measured slip and torque",
         examples=EXAMPLES,
-        codes="Exit code 1: the samples do not determine all free parameters, or what is left over is not noise; the "
+        codes="Exit code 1: the samples do not determine all free parameters, or the residuals are not noise; the "
         "results are written all the same.",
     )
     fit.add_argument("file", type=Path, help="CSV file; a unit in brackets after the name of a column is converted")
@@ -65,9 +65,7 @@ def add_command(subparsers: Any) -> None:
     fit.add_argument("--bounds", metavar="NAME=LOW:HIGH,...", help="narrower bounds; a side may be empty")
     fit.add_argument("--rest", type=float, metavar="SLIP", help="abs(slip) below which a sample counts as at rest")
     fit.add_argument("--confidence", type=float, default=0.95, help="confidence of the intervals, default 0.95")
-    fit.add_argument(
-        "--loss", default="linear", help="linear, soft_l1, huber or cauchy: how samples that are off count"
-    )
+    fit.add_argument("--loss", default="linear", help="linear, soft_l1, huber or cauchy: how outliers count")
     fit.add_argument("--out", type=Path, metavar="DIR", default=Path("out", "fit"), help="default: out/fit")
     shell.add_json(fit)
 

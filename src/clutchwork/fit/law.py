@@ -148,7 +148,8 @@ def _turned(search: Residuals) -> list[str]:
     if np.all(slips <= search.model.rest):
         return []
     count = counted(len(slips), "samples")
-    return [f"likely noise of the slip turned the sign of {count} near rest: leave out `rest`, or give {slips[-1]:.3g}"]
+    remedy = f"leave out `rest`, or give {slips[-1]:.3g}"
+    return [f"likely noise of the slip reversed the sign of {count} near rest: {remedy}"]
 
 
 def _doubts(search: Residuals, found: Estimate) -> list[str]:
@@ -211,7 +212,7 @@ def _remarks(search: Residuals, residuals: Array, parameters: Sequence[Parameter
     unit, force = ("m/s", "N") if search.measured.translation else ("rad/s", "N m")
     if isinstance(model, Sliding) and len(model.noisy):
         made.append(
-            f"the noise of the slip turned the sign of {counted(len(model.noisy), 'samples')} near rest: up to "
+            f"the noise of the slip reversed the sign of {counted(len(model.noisy), 'samples')} near rest: up to "
             f"{model.rest:.3g} {unit} they count as at rest; give `rest` for another threshold, or remove an offset"
         )
     if search.within is not None:

@@ -41,7 +41,7 @@ class ResponseFit(ParameterEstimates):
     def notes(self) -> str:
         """What to know about the values, one line each."""
         lines = [
-            f"neighbouring residuals of {name} are correlated ({alike:.2f}): the driveline misses something or the"
+            f"neighbouring residuals of {name} are correlated ({alike:.2f}): the driveline lacks an effect or the"
             " samples were filtered; the intervals are widened for it"
             for name, alike in self.alike.items()
         ]

@@ -44,7 +44,7 @@ class FitResult(FittedLaw):
         """What to know about the values, one line each."""
         lines = [*self.advice, *self.remarks]
         if self.samples.turned:
-            lines.append("the torque was given against the slip, as it acts on the follower; its sign was turned")
+            lines.append("the torque was given against the slip, as it acts on the follower; its sign was reversed")
         if self.against > AGAINST:
             lines.append(
                 f"in {100 * self.against:.2g} % of the samples that slide the torque drives instead of braking: give"
@@ -52,7 +52,7 @@ class FitResult(FittedLaw):
             )
         if self.alike:
             lines.append(
-                f"neighbouring residuals are correlated ( {self.alike:.2f}): the law misses something or the"
+                f"neighbouring residuals are correlated ( {self.alike:.2f}): the law lacks an effect or the"
                 " samples were filtered; the intervals are widened for it"
             )
         return "\n".join(lines)

@@ -56,7 +56,7 @@ def merge(paths: Sequence[Path], out: Path) -> Path:
         entries = read(path)
         for name, content in entries.items():
             if name in whole and whole[name] != content and not name.endswith(".png"):
-                raise UseError("clutchwork fmu merge", [f"{path} and {paths[0]} differ in {name}: export both anew"])
+                raise UseError("clutchwork fmu merge", [f"{path} and {paths[0]} differ in {name}: export both again"])
         if whole and not entries.keys() - whole.keys():
             raise UseError("clutchwork fmu merge", [f"{path} has no library that {paths[0]} does not have"])
         missing = [name for name in whole if name not in entries and not name.startswith(BINARIES)]

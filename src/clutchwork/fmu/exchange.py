@@ -64,13 +64,13 @@ def exchange_faults(system: System, inputs: Sequence[FmuVariable], version: str)
     """Why a driveline cannot be an FMU for model exchange."""
     found, speeds = wiring(system), set(system.prescribed_input.tolist())
     for number in system.transmission_element.tolist():
-        yield f"'{found.elements[number].name}' has a ratio that varies, whose ties a solver does not keep"
+        yield f"'{found.elements[number].name}' has a ratio that varies, a constraint that a solver does not keep"
     for contact, place in zip(found.contacts, system.contact_place.tolist(), strict=True):
         if place >= 0:
-            yield f"'{contact.name}' has impacts, after which it is open for a solver whether it bounces or rests"
+            yield f"'{contact.name}' has impacts, after which a solver cannot tell whether it bounces or rests"
     if speeds:
         for number in system.load_contact.tolist():
-            yield f"the friction of '{found.contacts[number].name}' follows torques, beside a speed that is prescribed"
+            yield f"the friction of '{found.contacts[number].name}' depends on torques, beside a prescribed speed"
     for one in inputs:
         if version == "2.0" and speeds & set(one.inputs):
             yield f"'{one.name}' prescribes a speed, and FMI 2.0 has no rates of inputs there: take FMI 3.0"

@@ -197,7 +197,7 @@ def advice(made: Interface, source: System) -> Iterator[Problem]:
     for _, one in made.of(VariableKind.INPUT):
         names = {made.system.inputs[number].name for number in one.inputs}
         if names & sampled:
-            message = "is computed by a function of Python, which an FMU does not have: its start value is 0"
+            message = "is computed by a Python function, which an FMU cannot contain: its start value is 0"
             yield Problem(one.name, "", message, remedy="let the master set it from the start")
         if names & speeds:
             message = "prescribes a speed, which jumps from step to step where its value is held"

@@ -15,7 +15,7 @@ from clutchwork.fmu.variables import FmuVariable, LeftOut, Place, VariableKind
 OF_STARTS = {"initial_speed", "initial_angle", "initial_state", "contact_tolerance"}
 BENDS = "it is fixed when the FMU is made: export one for each value"
 WHOLE = "it is a whole number, which is fixed when the FMU is made"
-NOTHING = "it acts on nothing in this driveline"
+NOTHING = "it has no effect in this driveline"
 EMPTY = "it has no value in this driveline"
 
 

@@ -40,7 +40,7 @@ class Bytes:
         if self.count > MOST_BYTES:
             raise FMUError(f"it unpacks to more than {MOST_BYTES} bytes")
         if self.count > self.limit:
-            raise FMUError(f"it unpacks to more than {MOST_PACKED} times its size, which no FMU has a use for")
+            raise FMUError(f"it unpacks to more than {MOST_PACKED} times its size, which no FMU needs")
 
 
 def description_of(path: Path) -> bytes:

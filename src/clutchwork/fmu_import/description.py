@@ -95,7 +95,7 @@ def read(data: bytes) -> Description:
     kept = version[:3]
     run = root.find("CoSimulation")
     if run is None:
-        raise FMUError("it is not for co-simulation: ask its maker for an FMU for co-simulation")
+        raise FMUError("it does not support co-simulation: ask its supplier for an FMU that does")
     identifier = run.get("modelIdentifier", "")
     if not IDENTIFIER.fullmatch(identifier):
         raise FMUError(f"its modelIdentifier is {quote(identifier)}, which cannot be the name of a library")

@@ -24,14 +24,14 @@ if TYPE_CHECKING:
     from clutchwork.declare.node import Number
     from clutchwork.signals.sampled import Sampled
 
-UNTRUSTED = "runs the library of another program with all that you may do: say trust=True if you know where it is from"
+UNTRUSTED = "runs the library of another program with your permissions: give trust=True if you trust its source"
 
 
 class FMU:
     """An FMU for co-simulation (FMI 2.0 or 3.0) that runs beside a driveline: `fmu["p"]` is a signal for its elements.
 
-    Use it for a controller or a model of other people. Every `period` it reads its inputs just before that instant and
-    steps by one period; what it gives then holds from the next instant on: one period of delay, as of a control unit.
+    Use it for a controller or a model from another tool. Every `period` it reads its inputs just before that instant
+    and steps by one period; its outputs hold from the next instant on: a delay of one period, as with a control unit.
     At the first instant its outputs are those of its initialisation. Each run starts it afresh in a process of its own,
     which ends in a `SimulationError` with the name of the FMU where it crashes, hangs or reports an error.
     """
@@ -103,7 +103,7 @@ class FMU:
     def assignment(self, outputs: list[str]) -> Assignment:
         """What a run of it is, with some of its outputs; FMUError where the file is not what it was."""
         if self._read() != (self._description, self._library):
-            raise FMUError(f"{self.path} is not the file any more that it was: make cw.FMU anew")
+            raise FMUError(f"{self.path} has changed: make cw.FMU again")
         made, of = self._description, self._description.variables
         given = [(of[one].reference, of[one].type, value) for one, value in self.parameters.items()]
         read_, wanted = ([(of[one].reference, of[one].type) for one in names] for names in (self.inputs, outputs))

@@ -36,7 +36,7 @@ class Guest:
         """Outputs at an instant [s]: those of the step that ends there, from the inputs at its begin."""
         if time != self._time:
             if self.process.ended:
-                raise self._failed("was interrupted before it had answered: begin anew", "")
+                raise self._failed("was interrupted before it had answered: start again", "")
             # all that an instant needs is read before anything is done
             given = [self._read(name, signal, time, readings) for name, signal in self.fmu.inputs.items()]
             if not self._outputs:

@@ -173,7 +173,7 @@ def _rigid_problems(box: Definition) -> Iterator[Problem]:
             before = len(known.spare)
             known.add(row)
             if len(known.spare) > before:
-                fault = "says again what other sets say of the speeds of its members"
+                fault = "repeats what other sets say about the speeds of its members"
                 remedy = (
                     "correct its members, or write sets that share their torque, such as twin countershafts, as one"
                 )
@@ -219,7 +219,7 @@ def _fault(box: Definition, found: Combination) -> tuple[str, str]:
         missing = found.dof - 1
         return (
             f"closing {some} leaves {found.dof} speeds free: "
-            f"{box.input} does not drive {box.output}; {listed(free)} turn as they like",
+            f"{box.input} does not drive {box.output}; {listed(free)} turn freely",
             f"close {missing} more element{'s' if missing > 1 else ''}",
         )
     if found.idle:

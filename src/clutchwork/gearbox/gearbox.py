@@ -28,9 +28,9 @@ from clutchwork.gearbox.tables import summary
 class Gearbox(Definition):
     """A gearbox of planetary sets: its teeth, its members, its shift elements and its shift table.
 
-    Use it to see what follows from a gearbox before anything is simulated, and as the `gearbox` of a `cw.Transmission`.
-    Take one of the catalogue, `cw.Gearbox.load("zf-8hp70")`, read a file of your own, or build one with
-    `cw.Gearbox.from_dict`. Speeds and torques that it answers with are exact and per speed 1 and torque 1 at the input.
+    Use it to analyse a gearbox before any simulation, and as the `gearbox` of a `cw.Transmission`. Take one from the
+    catalogue, `cw.Gearbox.load("zf-8hp70")`, read a file of your own, or build one with `cw.Gearbox.from_dict`. Its
+    speeds and torques are exact, for speed 1 and torque 1 at the input.
 
     Equations: docs/theory/gearboxes.md. Source: H. W. Müller, Epicyclic Drive Trains, Wayne State Univ. Press 1982.
     """
@@ -112,8 +112,8 @@ class Gearbox(Definition):
     ) -> operating.OperatingPoint:
         """Every speed, torque and power of a power split, from speed and torque of the engine; no losses.
 
-        Use it for rows with two speeds that are free, and for hybrids in a gear. What is known must be as much as the
-        mode leaves free: a split has two speeds, and torques of two machines that follow from balance and battery.
+        Use it for rows with two free speeds, and for hybrids in a gear. Give as many quantities as the mode leaves
+        free: a split has two speeds, and torques of two machines that follow from balance and battery.
 
         Parameters: mode, a row of the shift table or closed elements; torque [N m] and speed [rad/s] of the input;
         output_speed [rad/s]; speeds [rad/s], of other members; machines, torques [N m] of machines that are known, by
@@ -141,7 +141,7 @@ class Gearbox(Definition):
         return operating.operating_point(self, closed, str(mode) if named else "", wanted)
 
     def mechanical_points(self, mode: str) -> list[operating.MechanicalPoint]:
-        """The ratios at which a machine of a split stands, so that all power goes mechanically, from low to high gear.
+        """The ratios of a split at which one machine stands still and all power is mechanical, from low to high gear.
 
         UseError for a row that is not a split.
         """
@@ -188,7 +188,7 @@ class Gearbox(Definition):
         return {gear: one.ratio for gear, one in self.states().items()}
 
     def combination(self, closed: Sequence[str]) -> motion.Combination:
-        """What closed elements make of the box: a gear, neutral, input or output held, a tie-up.
+        """The state of the box with these closed elements: a gear, neutral, input or output held, a tie-up.
 
         UseError for elements that the box does not have.
         """
@@ -211,7 +211,7 @@ class Gearbox(Definition):
         return motion.all_combinations(self)
 
     def swaps(self) -> list[analysis.Swap]:
-        """What every shift takes, skip shifts too: which elements open and close."""
+        """Every shift, skip shifts too: which elements open and close."""
         return list(analysis.swaps(self))
 
     def capacities(self) -> dict[str, analysis.Capacity]:
@@ -231,7 +231,7 @@ explain(Gearbox)
 
 @explained("cw.catalogue")
 def catalogue() -> dict[str, Gearbox]:
-    """The gearboxes that are known, by name; each with its source and its published ratios."""
+    """The known gearboxes by name, each with its source and its published ratios."""
     return {name: Gearbox.load(name) for name in store.names()}
 
 

@@ -118,7 +118,7 @@ class OpenPlates:
 
 @dataclass(frozen=True)
 class Churning:
-    """Oil that a wheel of a member moves: a torque that is known at one speed grows with its square.
+    """Churning of oil by a wheel of a member: a torque that is known at one speed and grows with its square.
 
     Parameters: member; torque [N m] at speed [rad/s] and 40 degC; exponent of the viscosity over that at 40 degC.
     """

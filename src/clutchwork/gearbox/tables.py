@@ -22,7 +22,7 @@ def summary(box: Definition) -> str:
     parts = [
         ("", f"{box.name}: {box.title or 'gearbox'}\n{sets(box)}"),
         ("gears: x closed; ratio input over output; step to the next gear; efficiency with mesh losses", gears(box)),
-        ("splits: two speeds are free; ratios at which a machine stands, and all power goes mechanically", splits(box)),
+        ("splits: two speeds are free; ratios at which one machine stands still: all power is mechanical", splits(box)),
         ("speed of members and slip of open elements at speed 1 of the input", speeds(box)),
         ("torque on closed elements at torque 1 of the input, and on the housing", torques(box)),
         ("what elements must hold, at torque 1 of the input", needed(box)),

@@ -78,8 +78,8 @@ class Differentiable:
     def value_and_jacobian(self, x: Any) -> tuple[Array, Array]:
         """Values, and their derivatives: a line for each value, a column for each number.
 
-        NaN for a derivative that does not exist, of which `f.gradient(x).problems` says why; NoGradient, a ValueError,
-        where there is none at all.
+        A derivative that does not exist is NaN, and `f.gradient(x).problems` says why; NoGradient, a ValueError, where
+        there is none at all.
         """
         found = self._found(self._point(x))
         return found.values.copy(), found.matrix.copy()
@@ -89,7 +89,7 @@ class Differentiable:
         return self.value_and_jacobian(x)[1]
 
     def vjp(self, x: Any, weights: Any) -> tuple[Array, Array]:
-        """Values, and the derivatives of their weighted sum, whose cost does not grow with the number of numbers.
+        """Values, and the derivatives of their weighted sum, at a cost that does not grow with the number of numbers.
 
         Parameters: weights, one for each value; one whose weight is 0 needs no derivatives. NoGradient, a ValueError,
         where a derivative of another one does not exist.

@@ -133,7 +133,7 @@ def crowded(events: Array, contacts: Sequence[str]) -> Iterator[tuple[float, str
         close = np.flatnonzero(times[CROWD - 1 :] - times[: max(0, len(times) - CROWD + 1)] < CROWDED)
         if len(close):
             first, last = float(times[close[0]]), float(times[close[0] + CROWD - 1])
-            why = f"locks and lets go {CROWD} times within {CROWDED:g} s at {first:.9g} s"
+            why = f"locks and breaks away {CROWD} times within {CROWDED:g} s at {first:.9g} s"
             yield last, f"{name} {why}; give the parts beside it damping, or its law more static friction"
 
 
@@ -221,7 +221,7 @@ def noted(system: System, grazes: Array, decided: Array) -> Iterator[str]:
         if REFUSED <= graze[INDEX] < WARNED:
             name = component(system, int(graze[COMPONENT]), int(graze[KIND]))
             measure = f"abs(dg/dt)/scale = {graze[INDEX]:.2g} 1/s, below {WARNED:g} 1/s"
-            yield f"{name} at {graze[TIME]:.9g} s nearly grazes: {measure}; derivatives are large and hold nearby"
+            yield f"{name} at {graze[TIME]:.9g} s barely passes zero: {measure}; derivatives are large and local"
 
 
 def component(system: System, number: int, kind: int) -> str:

@@ -16,7 +16,7 @@ from clutchwork.declare.calls import explained_methods
 
 @dataclass(frozen=True)
 class Hint:
-    """What may not be meant: where, when, which numbers show it, and what to do about it."""
+    """Something that may not be meant: where, when, the numbers that show it, and a remedy."""
 
     rule: str  # "never locks", a section of docs/guide/hints.md
     elements: tuple[str, ...]  # names of elements, or of shafts

@@ -110,7 +110,7 @@ def _problems(model: Any, at: Any) -> Iterator[str]:
         yield f"{quote(model)} is not a model; give a Driveline, a System, a Simulator, or a run with at=..."
     if isinstance(model, Simulator):
         if at is not None:
-            yield "at cannot be given with a Simulator, which is taken where it is; give sim.run for another time"
+            yield "at cannot be given with a Simulator, whose present time is used; give sim.run for another time"
     elif at is None:
         if isinstance(model, Trajectory):
             yield "at is missing; give the time of the run in s, such as at=1.2"

@@ -23,13 +23,13 @@ def notes(motion: Motion) -> Iterator[str]:
     """One sentence for each."""
     instant, system = motion.instant, motion.system
     for event in instant.events:
-        yield f"{event.element} goes from {event.before} to {event.after} at this instant: what comes after it is taken"
+        yield f"{event.element} goes from {event.before} to {event.after} at this instant: the motion after it is used"
     if not instant.events:
         names = [
             item.name for item in system.inputs if item.name not in instant.held and _is_knot(item.signal, instant.time)
         ]
         for name in names:
-            yield f"{name} has a knot at this instant: what comes after it is taken"
+            yield f"{name} has a knot at this instant: the motion after it is used"
     yield from _slips_at_rest(motion)
     yield from _at_capacity(motion)
     yield from _without_load(motion)
@@ -76,11 +76,11 @@ def _at_capacity(motion: Motion) -> Iterator[str]:
         contact = motion.system.contacts[number]
         torque, capacity = (float(instant.part(part)[number]) for part in ("contact_torque", "contact_capacity"))
         if contact.one_way and abs(torque) <= IDLE:
-            yield f"{contact.name} is locked and holds nothing: it is taken as locked, though it overruns the other way"
+            yield f"{contact.name} is locked without load: it is taken as locked, though it could overrun the other way"
         if contact.one_way or number_shared:
             continue
         if abs(torque) >= (1.0 - AT_CAPACITY) * capacity:
-            yield f"{contact.name} holds all that it can, {capacity:g} N m: it is taken as locked"
+            yield f"{contact.name} is at its capacity, {capacity:g} N m: it is taken as locked"
 
 
 def _without_load(motion: Motion) -> Iterator[str]:

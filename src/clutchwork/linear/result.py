@@ -34,7 +34,7 @@ class Linear(LinearSystem):
     """A linear system about one instant: d/dt x = rate + A x + B u, y = C x + D u.
 
     x, u and y are what states, inputs and outputs deviate from their values at the instant: `state`, `input`, `output`.
-    `rate` is how the states move there; it is zero where the driveline moves steadily.
+    `rate` is the rate of the states there; it is zero in steady motion.
     """
 
     @explained("frequency_response")

@@ -123,7 +123,7 @@ NO_NAME, GIVE_NAME = (
     "must be a printable string",
     "give a name of printable characters on one line, without blanks at its ends",
 )
-RUN_AGAIN = "where a cell of a notebook was run again, make the driveline anew in it with cw.Driveline(...)"
+RUN_AGAIN = "if a notebook cell was run again, create the driveline in it with cw.Driveline(...)"
 LONGEST_NAME = 200
 
 

@@ -7,6 +7,7 @@ from math import isfinite
 from typing import TYPE_CHECKING, NamedTuple, TypeAlias
 
 from clutchwork.base.errors import Problem
+from clutchwork.base.quote import quote
 from clutchwork.declare.node import Domain
 from clutchwork.declare.rational import MINUS, ONE, ZERO, Echelon, Row, exact, plus, smallest
 from clutchwork.declare.schema import Role, specs
@@ -266,4 +267,9 @@ def _problem(model: Mechanism, node: int, guilty: list[str], excess: Fraction) -
         else f"contradicts the prescribed speeds, which give {float(speed - excess):.9g} {unit}"
     )
     remedy = "correct one of them, or remove this one: it then follows from the others"
+    whole = model.nodes[node].name.rpartition(".")[0]
+    if node >= len(model.nodes) - model.inner and whole:
+        # nobody wrote this speed: the gear of a composite did
+        message = f"follows from the start of {quote(whole)}, and {message}"
+        remedy = "give the speed of one side alone at the start: the other side then follows"
     return Problem(model.node_label(node), "speed", message, f"{float(speed):g} {unit}", remedy)

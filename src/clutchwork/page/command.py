@@ -21,7 +21,7 @@ EXAMPLES = (
     ),
 )
 ABOUT = (
-    "The page computes: whoever reads it drags the knots of pressures and turns sliders, and sees speeds, torques, heat"
+    "The page computes: its reader drags the knots of pressures and moves sliders, and sees speeds, torques, heat"
     " and events follow. It is one file that needs no network and no installation."
 )
 

@@ -138,7 +138,7 @@ def with_tables(system: System, wanted: dict[str, Points]) -> tuple[System, list
     for name, points in wanted.items():
         own = parameter(made, name)
         if not own.is_signal:
-            problems.append(f"drag: {name} is more than a signal of its own in this driveline; drag another one")
+            problems.append(f"drag: {name} is not an independent signal in this driveline; drag another one")
             continue
         lower, upper = (bound if isfinite(bound) else None for bound in own.bounds)
         found.append(Dragged(name, own.unit, points, lower, upper, own.inputs))

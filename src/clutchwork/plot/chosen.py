@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -12,6 +13,7 @@ from clutchwork.base.paths import path_fault
 from clutchwork.base.quote import listed, quote
 from clutchwork.declare.wording import where_signals
 from clutchwork.plot.panels import busy, driven
+from clutchwork.plot.style import MILLIMETRE, NARROWEST, WIDTH, WIDTHS
 from clutchwork.results.selection import meant
 
 if TYPE_CHECKING:
@@ -34,6 +36,7 @@ class PlotArguments:
     events: Any = True
     measured: Any = None
     units: Any = None
+    width: Any = None
 
 
 @dataclass(frozen=True)
@@ -42,6 +45,17 @@ class PanelRequest:
 
     groups: tuple[tuple[bool, tuple[str, ...]], ...]
     path: Path | None
+
+
+def wide(width: Any, call: str) -> float:
+    """The width of a picture in inch: a number in mm, or words for one of a journal."""
+    if width is None:
+        return WIDTH
+    told = WIDTHS.get(width, width) if isinstance(width, str) else width
+    if isinstance(told, bool) or not isinstance(told, int | float) or not NARROWEST <= told < math.inf:
+        ways = ", ".join(map(repr, WIDTHS))
+        raise UseError(call, [f"width is {quote(width)}: give {ways}, or at least {NARROWEST:g} mm"])
+    return float(told) * MILLIMETRE
 
 
 def asked(call: str, given: Sequence[Any], path: Any, endings: Collection[str], known: Collection[str]) -> PanelRequest:

@@ -10,7 +10,7 @@ from clutchwork.base.errors import UseError, near
 from clutchwork.base.quote import quote
 from clutchwork.declare.calls import explained
 from clutchwork.plot import named
-from clutchwork.plot.chosen import PICTURES, PanelRequest, asked, panels, usual
+from clutchwork.plot.chosen import PICTURES, PanelRequest, asked, panels, usual, wide
 from clutchwork.plot.curves import panels_of, units_of
 from clutchwork.plot.measured import samples, with_samples
 from clutchwork.plot.view import viewed
@@ -34,15 +34,16 @@ def compare(
     colour: str = "run",
     measured: Mapping[str, Any] | None = None,
     units: Mapping[str, str] | None = None,
+    width: float | str | None = None,
 ) -> Picture:
     """Draw signals of several runs over each other: `cw.compare({"soft": a, "hard": b}, "halfshaft.torque")`.
 
     Parameters: runs_and_signals, a mapping from labels to runs, or the runs one after another, then signals as
     `run.plot` takes them: names, wildcards, lists of names for one panel, and the path of a picture; without any,
     speeds, loads and torques of contacts and temperatures that all runs have. labels, of runs that are not in a
-    mapping, by default the names of their models, or run 1, run 2 ...; unit, path, zoom [s], events, measured and
-    units as in `run.plot`; colour, "run" for one colour for each run and dashes for signals, or "signal" for the other
-    way round.
+    mapping, by default the names of their models, or run 1, run 2 ...; unit, path, zoom [s], events, measured, units
+    and width as in `run.plot`; colour, "run" for one colour for each run and dashes for signals, or "signal" for the
+    other way round.
 
     Models may differ. A signal that one of the runs does not have is an `UnknownName` error that names the run; a
     wildcard takes what each of them has. Needs matplotlib.
@@ -57,7 +58,8 @@ def compare(
         wanted = PanelRequest(_common(runs), wanted.path)
     view = viewed(runs, zoom, events, "compare")
     groups = with_samples(panels(runs, wanted, unit, "compare"), extra)
-    return named.draw(view, panels_of(view.runs, groups, extra, "compare", shown_in), wanted.path, colour)
+    shown = panels_of(view.runs, groups, extra, "compare", shown_in)
+    return named.draw(view, shown, wanted.path, colour, wide(width, "compare"))
 
 
 def _runs(given: Sequence[Any], labels: Any) -> tuple[dict[str, Recorded], list[Any]]:

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 from clutchwork.plot import panels as looks_of
 from clutchwork.plot.curves import Curve, Panel, Side, thinned
 from clutchwork.plot.figure import figure_of, written
-from clutchwork.plot.style import COLOURS, DASHES, EVENT_LINE, looks
+from clutchwork.plot.style import DASHES, EVENT_LINE, MILLIMETRE, NARROW, WIDTH, colours, looks
 from clutchwork.plot.view import View, happened
 
 if TYPE_CHECKING:
@@ -18,6 +18,7 @@ if TYPE_CHECKING:
     from clutchwork.plot.canvas import Picture
 
 HEIGHT, LINE, MOST_LINES = 40.0, 3.9, 18  # mm of a panel, mm of a line of its legend, lines of one column
+COLUMNS = 2  # of a legend above a panel
 # four for each dot across the picture: what is left out cannot be seen
 MOST_POINTS = 40_000
 # share of the width that a letter of a word at an event needs
@@ -25,17 +26,22 @@ LETTER = 0.0125
 POINTS: dict[str, Any] = {"linestyle": "none", "marker": "o", "markersize": 2.4, "markeredgewidth": 0.0, "alpha": 0.65}
 
 
-def draw(view: View, panels: Sequence[Panel], path: Path | None, colour: str) -> Picture:
-    """Draw panels below each other over the same time, and write the picture where there is a path."""
-    heights = [_height(panel) for panel in panels]
+def draw(view: View, panels: Sequence[Panel], path: Path | None, colour: str, width: float = WIDTH) -> Picture:
+    """Draw panels below each other over the same time, and write the picture where there is a path.
+
+    Parameters: width [inch].
+    """
+    narrow = width < NARROW * MILLIMETRE
+    heights = [HEIGHT if narrow else _height(panel) for panel in panels]
+    above = sum(LINE * (_rows(panel) + 1.0) for panel in panels) if narrow else 0.0
     # a dollar in a name is a dollar
-    with figure_of(sum(heights) + 5.0 * len(panels) + 13.0, formulas=False) as figure:
+    with figure_of(sum(heights) + 5.0 * len(panels) + 13.0 + above, formulas=False, width=width) as figure:
         rows = figure.subplots(len(panels), 1, sharex=True, squeeze=False, height_ratios=heights)[:, 0]
         for axes, panel in zip(rows, panels, strict=True):
             _panel(axes, panel, view, colour)
         rows[0].set_xlim(view.begin, view.end)
         rows[-1].set_xlabel("time, s")
-        _words(rows[0], view)
+        _words(rows[0], view, LETTER * WIDTH / width)
         figure.align_ylabels(rows)
         return written(figure, path)
 
@@ -43,6 +49,11 @@ def draw(view: View, panels: Sequence[Panel], path: Path | None, colour: str) ->
 def _height(panel: Panel) -> float:
     """Tall enough for the legend."""
     return max(HEIGHT, LINE * min(len(panel.curves), MOST_LINES) + 4.0)
+
+
+def _rows(panel: Panel) -> int:
+    """Lines of a legend above a panel."""
+    return -(-len(panel.curves) // COLUMNS)
 
 
 def _panel(axes: Axes, panel: Panel, view: View, colour: str) -> None:
@@ -79,6 +90,9 @@ def _legend(axes: Axes, panel: Panel, handles: Sequence[Any]) -> None:
         units = [side.unit or "state" for side in panel.sides for _ in side.curves]
         labels = [f"{label} [{unit}]" for label, unit in zip(labels, units, strict=True)]
     away = 1.0 if len(panel.sides) == 1 else 1.11
+    if looks_of.is_narrow(axes):
+        looks_of.above(axes, handles, labels, COLUMNS)
+        return
     axes.legend(
         handles, labels, loc="upper left", bbox_to_anchor=(away, 1.02), borderaxespad=0.3, alignment="left",
         ncols=-(-len(labels) // MOST_LINES), handlelength=2.4, labelspacing=0.3, columnspacing=0.8,
@@ -91,23 +105,23 @@ def curve_looks(curves: Sequence[Curve], runs: Sequence[str], colour: str) -> li
     if len(runs) < 2:
         own = dict(zip(signals, looks(len(signals)), strict=True))
         return [{**own[curve.signal], **(POINTS if curve.measured else {})} for curve in curves]
-    made = []
+    made, hues = [], colours()
     for curve in curves:
         run, signal = (0 if curve.measured else runs.index(curve.run)), signals.index(curve.signal)
         hue, dash = (run, signal) if colour == "run" else (signal, run)
-        look = {"color": COLOURS[hue % len(COLOURS)], "linestyle": DASHES[dash % len(DASHES)]}
+        look = {"color": hues[hue % len(hues)], "linestyle": DASHES[dash % len(DASHES)]}
         # samples belong to no run
         made.append({**look, **POINTS, "color": "#404040"} if curve.measured else look)
     return made
 
 
-def _words(axes: Axes, view: View) -> None:
-    """What happens, above the first panel, as far as there is room."""
+def _words(axes: Axes, view: View, letter: float) -> None:
+    """What happens, above the first panel, as far as there is room; letter, share of the width that one needs."""
     begin, end = view.begin, view.end
     taken = 0.0
     for instant in sorted({event.time for _, event in view.marks}):
         found = list(dict.fromkeys(happened(event) for _, event in view.marks if event.time == instant))
-        share, room = (instant - begin) / (end - begin), LETTER * len(found[0]) + 0.01
+        share, room = (instant - begin) / (end - begin), letter * len(found[0]) + 0.01
         # beside its line where another word takes the room
         left = min(max(share - 0.5 * room, taken), 1.0 - room)
         if len(found) > 1 or left < taken or left > share:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from clutchwork.declare.node import Domain
 from clutchwork.declare.schema import specs
-from clutchwork.plot.style import COLOURS, DASHES, EVENT_LINE, looks
+from clutchwork.plot.style import DASHES, EVENT_LINE, MILLIMETRE, NARROW, colours, looks
 from clutchwork.results.channels import LOCKED
 
 if TYPE_CHECKING:
@@ -150,9 +150,12 @@ def member_looks(run: Recorded, domain: Domain) -> dict[str, dict[str, Any]]:
 def contact_looks(run: Recorded, names: Any) -> dict[str, dict[str, Any]]:
     """Colour of the chosen contacts, the same in all panels."""
     places = {name: place for place, name in enumerate(busy(run))}
-    count = len(COLOURS)
+    hues = colours()
+    count = len(hues)
     return {
-        name: {"color": COLOURS[i % count], "linestyle": DASHES[i // count]} for name in names for i in [places[name]]
+        name: {"color": hues[i % count], "linestyle": DASHES[i // count % len(DASHES)]}
+        for name in names
+        for i in [places[name]]
     }
 
 
@@ -235,13 +238,29 @@ def spans(time: NDArray[np.float64], holds: NDArray[np.bool_]) -> list[tuple[flo
 
 def legend(axes: Axes, title: str = "") -> None:
     """Legend to the right of the axes, where it covers nothing."""
-    handles, _ = axes.get_legend_handles_labels()
-    if handles:
+    handles, labels = axes.get_legend_handles_labels()
+    if handles and is_narrow(axes):
+        above(axes, handles, labels, 3, title)
+    elif handles:
         columns = 1 + (len(handles) - 1) // MOST_ROWS
         axes.legend(
             loc="upper left", bbox_to_anchor=(1.0, 1.02), borderaxespad=0.3, title=title or None, title_fontsize=7.5,
             alignment="left", ncols=columns, handlelength=2.4, labelspacing=0.3, columnspacing=0.8,
         )  # fmt: skip
+
+
+def is_narrow(axes: Axes) -> bool:
+    """Whether a picture has no room for legends beside its panels."""
+    figure = axes.get_figure(root=True)
+    return figure is not None and figure.get_figwidth() < NARROW * MILLIMETRE
+
+
+def above(axes: Axes, handles: Sequence[Any], labels: Sequence[str], columns: int, title: str = "") -> None:
+    """Legend above axes of a narrow picture, over the words at events."""
+    axes.legend(
+        handles, labels, loc="lower left", bbox_to_anchor=(0.0, 1.0), borderaxespad=1.3, ncols=columns,
+        title=title or None, title_fontsize=7.5, alignment="left", handlelength=2.0, labelspacing=0.3, columnspacing=0.8,
+    )  # fmt: skip
 
 
 def window(run: Recorded, event: Event) -> tuple[float, float]:

@@ -33,17 +33,19 @@ class AxesPanel:
     draw: Callable[[Axes], None]
 
 
-def picture(view: View, path: Path | None = None, *, lockup: Event | None = None) -> Picture:
+def picture(
+    view: View, path: Path | None = None, *, lockup: Event | None = None, width: float = style.WIDTH
+) -> Picture:
     """The picture of a run in which nothing is named, and write it where there is a path.
 
-    `lockup` is the event to look at closely, by default the last one in which a contact locks.
+    `lockup` is the event to look at closely, by default the last one in which a contact locks; width [inch].
     """
     (run,) = view.runs.values()
     lockup = lockup or last_lockup(run)
     chosen = _panels(run, lockup)
     height = sum(panel.height + (9.0 if panel.whole else 14.0) for panel in chosen) + 12.0
     # a dollar in a name is a dollar
-    with figure_of(height, formulas=False) as figure:
+    with figure_of(height, formulas=False, width=width) as figure:
         _draw(figure, view, lockup, chosen)
         return written(figure, path)
 

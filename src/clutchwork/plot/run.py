@@ -9,7 +9,7 @@ from clutchwork.base.errors import UseError
 from clutchwork.base.plural import counted
 from clutchwork.base.quote import quote
 from clutchwork.plot import named
-from clutchwork.plot.chosen import PICTURES, PanelRequest, PlotArguments, asked, panels, usual_groups
+from clutchwork.plot.chosen import PICTURES, PanelRequest, PlotArguments, asked, panels, usual_groups, wide
 from clutchwork.plot.curves import panels_of, units_of
 from clutchwork.plot.measured import samples, with_samples
 from clutchwork.plot.panels import busy
@@ -35,9 +35,10 @@ def plot(run: Recorded, chosen: PlotArguments, lockup: Event | None = None) -> P
     _check_lockup(lockup, bool(groups))
     view = viewed(runs, chosen.zoom, chosen.events, "plot")
     if groups:
-        return named.draw(view, panels_of(view.runs, groups, extra, "plot", shown_in), wanted.path, "signal")
+        shown = panels_of(view.runs, groups, extra, "plot", shown_in)
+        return named.draw(view, shown, wanted.path, "signal", wide(chosen.width, "plot"))
     _check_inside(lockup, view, chosen.zoom)
-    return picture(view, wanted.path, lockup=lockup)
+    return picture(view, wanted.path, lockup=lockup, width=wide(chosen.width, "plot"))
 
 
 def _check_lockup(lockup: object, is_named: bool) -> None:

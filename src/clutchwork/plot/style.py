@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import sys
 from typing import Any
 
 # Okabe and Ito, doi 10.1080/00031305.2008; yellow left out because it vanishes on paper
@@ -39,20 +40,41 @@ RC: Any = {
 MORE_DASHES: tuple[Any, ...] = ((0, (6, 1.5, 1, 1.5)), (0, (3, 1, 1, 1, 1, 1)))
 
 MILLIMETRE = 1.0 / 25.4  # inch
-WIDTH = 180.0 * MILLIMETRE  # two columns of a journal
+WIDTHS = {"single column": 88.0, "double column": 180.0}  # mm, of a journal
+WIDTH = WIDTHS["double column"] * MILLIMETRE
+# mm: below NARROW legends stand above their panels
+NARROW, NARROWEST = 130.0, 75.0
 
 EVENT_LINE: dict[str, Any] = {"color": "#9A9A9A", "linewidth": 0.6, "linestyle": (0, (3, 2)), "zorder": 1}
 
 
 def settings(formulas: bool) -> Any:
-    """Settings of matplotlib; whether text between dollars is a formula."""
-    return {**RC, "text.parse_math": formulas}
+    """Settings of matplotlib for a picture; whether text between dollars is a formula.
+
+    A setting that the user changed, in rcParams, a style or a matplotlibrc, stays.
+    """
+    matplotlib = sys.modules["matplotlib"]
+    own, default = matplotlib.rcParams, matplotlib.rcParamsDefault
+    return {**{name: value for name, value in RC.items() if own[name] == default[name]}, "text.parse_math": formulas}
+
+
+def colours() -> tuple[Any, ...]:
+    """Colours of curves: those of the property cycle where the user has one of their own."""
+    # an Any that is there where a picture is drawn; plotly has no such cycle
+    matplotlib: Any = sys.modules.get("matplotlib")
+    if matplotlib is None:
+        return COLOURS
+    own = matplotlib.rcParams["axes.prop_cycle"]
+    if own == matplotlib.rcParamsDefault["axes.prop_cycle"]:
+        return COLOURS
+    return tuple(own.by_key().get("color", COLOURS))
 
 
 def looks(count: int) -> list[dict[str, Any]]:
     """Colours and dashes of `count` curves: later ones have more gaps, so that a curve below stays visible."""
-    dashes = DASHES if count <= len(COLOURS) * len(DASHES) else DASHES + MORE_DASHES
+    hues = colours()
+    dashes = DASHES if count <= len(hues) * len(DASHES) else DASHES + MORE_DASHES
     return [
-        {"color": COLOURS[i % len(COLOURS)], "linestyle": dashes[min(len(dashes) * i // count, len(dashes) - 1)]}
+        {"color": hues[i % len(hues)], "linestyle": dashes[min(len(dashes) * i // count, len(dashes) - 1)]}
         for i in range(count)
     ]

@@ -58,12 +58,12 @@ class EnergyBalance:
 
     @property
     def residual(self) -> float:
-        """What the balance misses [J]; where there are thermal nodes, it counts the heat that arrived there."""
+        """Error of the balance [J]; where there are thermal nodes, it counts the heat that arrived there."""
         return self.input - self.kinetic - self.elastic - self.untracked - sum(self.thermal.values())
 
     @property
     def turnover(self) -> float:
-        """Half the sum of the sizes of all net energies [J]; small where what went in came back, as after a swing."""
+        """Half the sum of the absolute net energies [J]; small where energy came back, as in an oscillation."""
         parts = [*self.sources.values(), *self.heat.values(), self.kinetic, self.elastic]
         return 0.5 * sum(abs(part) for part in parts)
 

@@ -46,8 +46,8 @@ class Gradient:
 
     `g["lock(c1)", "c1.gain"]` is one of them, `g["lock(c1)"]` all of one value, `g.matrix` all, a line for each value
     in `g.of` and a column for each number in `g.by`. `g.values` holds the values themselves, `g.x` the numbers;
-    `g.notes` says where the gradient is only just there, such as of a clutch that nearly grazes. A derivative that does
-    not exist is NaN, and `g.problems` says why.
+    `g.notes` says where the gradient barely exists, such as for a slip that passes zero very slowly. A derivative that
+    does not exist is NaN, and `g.problems` says why.
     """
 
     of: tuple[str, ...]

@@ -239,6 +239,7 @@ class Trajectory(Exports):
         lockup: Event | None = None,
         measured: Mapping[str, Any] | None = None,
         units: Mapping[str, str] | None = None,
+        width: float | str | None = None,
     ) -> Picture:
         """Picture of some signals, or of speeds, lock-up, inputs, torques, states and temperatures. Needs matplotlib.
 
@@ -249,14 +250,16 @@ class Trajectory(Exports):
         ones are marked: True for all unless there are more than 30, False, contacts by name, or events of the run;
         lockup, the event to look at closely where nothing is named, by default the last one in which a contact locks;
         measured, samples by the name of the signal: (times [s], values in SI), a `Column`, or a pandas Series; units,
-        in which signals are drawn, `{"*.speed": "rpm"}`, as in `to_pandas`; each has a panel where nothing is named.
+        in which signals are drawn, `{"*.speed": "rpm"}`, as in `to_pandas`; each has a panel where nothing is named;
+        width, "single column" or "double column" of a journal, 88 or 180 mm, or a number [mm].
 
-        The figure of matplotlib that it returns shows itself in a notebook. docs/guide/pictures.md
+        Settings of matplotlib that you changed, such as a style, stay. The figure that it returns shows itself in a
+        notebook. docs/guide/pictures.md
         """
         from clutchwork.plot.chosen import PlotArguments
         from clutchwork.plot.run import plot
 
-        chosen = PlotArguments(signals, unit, path, zoom, events, measured, units)
+        chosen = PlotArguments(signals, unit, path, zoom, events, measured, units, width)
         return plot(self, chosen, lockup)
 
     @explained("explore")

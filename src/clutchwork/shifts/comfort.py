@@ -17,7 +17,7 @@ MEMORY = 20.0
 
 
 def jerk(speed: Array, step: float, *, window: float = WINDOW) -> Array:
-    """The jerk that is felt [m/s3]: change of the mean acceleration over a window, docs/theory/jerk.md (1).
+    """The perceived jerk [m/s3]: change of the mean acceleration over a window, docs/theory/jerk.md (1).
 
     Parameters: speed [m/s] at equal steps [s]; window [s]. Before the first speed and behind the last one it is taken
     to go on evenly. UseError where the record is shorter than the window.

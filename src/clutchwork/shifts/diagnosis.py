@@ -47,7 +47,7 @@ class _Seen:
 def diagnose(
     run: Any, box: Gearbox, one: ShiftQuality, prefix: str = "gearbox", *, torque: str = "", acceleration: str = ""
 ) -> tuple[Finding, ...]:
-    """Why a shift was as it was: the cause of its largest jerk first.
+    """Why a shift was harsh: the cause of its largest jerk first.
 
     Use it where a shift is harsh, whatever controlled it: each finding has its instant, its cause in numbers, and the
     settings of `ShiftSettings` that cure it. A shift that was smooth has none.

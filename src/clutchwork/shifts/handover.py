@@ -29,8 +29,8 @@ BESIDE = 0.6
 class Handover:
     """Elements that open and elements that close at the same time, while others stay closed.
 
-    The slips y of the elements that close are the coordinates of what moves beside the output: docs/theory/shifts.md
-    (13). With one of each it is an `Exchange`.
+    The slips y of the closing elements are the coordinates of the motion besides that of the output:
+    docs/theory/shifts.md (13). With one of each it is an `Exchange`.
 
     Parameters:
         off: elements that open

@@ -47,7 +47,7 @@ class Plant:
 
 
 def plant_of(system: System, box: Gearbox, prefix: str = "gearbox") -> Plant:
-    """Measure a gearbox of a driveline.
+    """Measure capacities and inertias of a gearbox in a driveline.
 
     Use it to give a `ShiftController` what a control unit is calibrated with. Capacities are read at two pressures, so
     they are those of any element whose capacity is linear in its pressure; valves and pistons before it are measured by

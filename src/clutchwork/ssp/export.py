@@ -74,7 +74,7 @@ def _description(name: str, path: Path) -> Description:
     except FMUError as error:
         raise FMUError(f"{name} ({path}): {error}") from None
     if made.version != "2.0":
-        raise FMUError(f"{name} ({path}): SSP 1.0 knows FMI 2.0, and this is {made.version}: export it anew")
+        raise FMUError(f"{name} ({path}): SSP 1.0 knows FMI 2.0, and this is {made.version}: export it again")
     return made
 
 

@@ -41,11 +41,11 @@ OF_A_STATE = "give what sim.save(), run.state() or cw.State.load(path) returned"
 
 @explained_methods("sim")
 class Simulator:
-    """A run that goes on when it is asked to: `advance` by a time, `set` what acts on it, read what it does.
+    """A run that advances step by step: `advance` it by a time, `set` its inputs, read its signals.
 
-    Use it where something outside of the model decides: a controller, a user, another simulator. Where all is known
-    before, `simulate` does it in one call. Between the steps everything is as in `simulate`: contacts lock and let go
-    inside of a step, controllers of the model act at their instants, signals follow their tables until they are set.
+    Use it when something outside the model decides: a controller, a user, another simulator. If everything is known
+    beforehand, `simulate` does it in one call. Inside a step everything is as in `simulate`: contacts lock and break
+    away, controllers of the model act at their instants, signals follow their tables until they are set.
     """
 
     _time: float  # s
@@ -90,10 +90,10 @@ class Simulator:
 
     @explained("sim.advance")
     def advance(self, duration: float) -> None:
-        """Go on by a time [s].
+        """Advance by a time [s].
 
-        A time that is a multiple of the duration but for round-off is that multiple. A run that cannot go on is a
-        `SimulationError`, with the run so far in `trajectory`; time stands then, until `restore` or `reset`.
+        A time within round-off of a multiple of the duration is set to that multiple. A run that cannot go on raises
+        `SimulationError`, with the run so far in `trajectory`, and stays at its time until `restore` or `reset`.
         """
         step = in_seconds("sim.advance", "duration", duration)
         if step < 0.0:
@@ -102,7 +102,7 @@ class Simulator:
 
     @explained("sim.advance_to")
     def advance_to(self, time: float) -> None:
-        """Go on up to a point in time [s]; errors are those of `advance`."""
+        """Advance to a point in time [s]; errors are those of `advance`."""
         end = in_seconds("sim.advance_to", "time", time)
         if end < self._time:
             now = f"before the present time {self._time:.9g} s"
@@ -200,7 +200,7 @@ class Simulator:
         again or released. It follows a `cw.Table` over the time of the run [s], from the present time on, which has at
         most as many pieces ahead as the model has for that signal. A parameter, such as "c1.gain" or
         "c1.friction.static", keeps its value too; what a run cannot change, such as an inertia, is refused. ModelError
-        names all that is wrong at once, and nothing is set then.
+        names everything wrong at once, and nothing is set then.
         """
         if isinstance(value, float) and isinstance(name, str):
             known, number = self._outside.signals.get(name), float(value)
@@ -224,7 +224,7 @@ class Simulator:
 
     @explained("sim.release")
     def release(self, *names: str) -> None:
-        """Let signals follow the model again, and parameters have their value of it; all of them without a name."""
+        """Return signals and parameters to the values of the model; all of them without a name."""
         held = self.held
         unset = [name for name in names if name not in held]
         if unset:
@@ -293,7 +293,7 @@ class Simulator:
         return np.array([self._readout[one] for one in name], dtype=float)
 
     def readings(self) -> Readings:
-        """All signals at the present time by name, evaluated when they are read; they stay so when the run goes on."""
+        """All signals at the present time by name, evaluated when read; they do not change later."""
         return Readings(self._readout.channels, self._row().copy())
 
     def __contains__(self, name: object) -> bool:
@@ -314,7 +314,7 @@ class Simulator:
 
     @property
     def events(self) -> Events:
-        """What happened to the contacts so far, with what follows at once from what was set."""
+        """The events so far, including those caused at once by values that were set."""
         if self._failure is not None:
             return self._past.events
         if self._ahead is None:
@@ -334,7 +334,7 @@ class Simulator:
     # ------------------------------------------------------------------------------------------------------- states
 
     def save(self) -> State:
-        """The complete state at the present time, with all that was set from outside: to go on from it anywhere."""
+        """The complete state at the present time, with everything that was set from outside."""
         if self._failure is not None:
             raise SimulationError(f"there is nothing to save: {self._failure}", self._failure.trajectory)
         row, left = self._row().tobytes(), b"" if self._left is None else self._left.tobytes()

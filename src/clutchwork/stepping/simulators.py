@@ -100,9 +100,9 @@ class Simulators:
 
     @explained("sims.advance")
     def advance(self, duration: float, which: ArrayLike | None = None) -> None:
-        """Let all runs go on by a time [s], or those of `which`: numbers, or whether, for each.
+        """Advance all runs by a time [s], or those of `which`: indices, or a boolean for each.
 
-        A run that cannot go on stands where it ended, and `failed` says so; the others are not touched by it.
+        A run that cannot go on stays where it ended, and `failed` says so; it does not affect the others.
         """
         step = in_seconds("sims.advance", "duration", duration)
         if step < 0.0:
@@ -136,7 +136,7 @@ class Simulators:
 
         Parameters: which, numbers of the runs, or whether, for each; then an array has as many numbers as these. It
         holds the value [in its unit] in place of that of the model until it is set again, or until `reset`. ModelError
-        names all that is wrong at once, and nothing is set then. Other parameters are those of `vary`.
+        names everything wrong at once, and nothing is set then. Parameters are given by `vary`.
         """
         if isinstance(name, Mapping) == (value is not None):
             wanted = "values by name, or one name and its values"
@@ -204,11 +204,11 @@ class Simulators:
 
     @property
     def failed(self) -> NDArray[np.bool_]:
-        """Whether each run cannot go on; `reset` or `restore` begin it anew."""
+        """Whether each run has failed; `reset` or `restore` restarts it."""
         return np.asarray(self._status != DONE)
 
     def message(self, number: int) -> str:
-        """Why a run cannot go on; "" where it can."""
+        """Why a run failed; "" if it has not."""
         (number,) = self._chosen("sims.message", [number]).tolist()
         status = int(self._status[number])
         return "" if status == DONE else message_of(self._own[number], status, self._runs[number])
@@ -255,7 +255,7 @@ class Simulators:
 
     @explained("sims.reset")
     def reset(self, which: ArrayLike | None = None, vary: Mapping[str, ArrayLike] | None = None) -> None:
-        """Begin all runs anew, or those of `which`: at their start, with nothing set.
+        """Restart all runs, or those of `which`: at their start, with nothing set.
 
         Parameters: vary, other values for these runs, an array of one number for each, in place of those they had.
         """

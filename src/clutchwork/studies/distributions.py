@@ -82,7 +82,7 @@ class Discrete:
 
 @explained("cw.uniform", low="0.15", high="0.25")
 def uniform(low: Any, high: Any) -> Distribution:
-    """Any value between two bounds, all alike, for `design`.
+    """Any value between two bounds, all equally likely, for `design`.
 
     Parameters: low, high, the bounds, in SI or with a unit.
     """

@@ -166,7 +166,7 @@ def _complete(output: str, values: NDArray[Any], count: int, missing: float | No
         elif missing is not None:
             values = np.where(np.isfinite(values), values, missing)
         if not problems and not values.var() > 0.0:
-            problems.append(f"{output} is the same in all variants, so that there is nothing to share out")
+            problems.append(f"{output} is the same in all variants, so there is no variance to apportion")
     if problems:
         raise UseError("sobol_indices", problems)
     return values

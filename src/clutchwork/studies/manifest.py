@@ -121,8 +121,8 @@ def refuse_other(folder: Path, was: Manifest, asked: Mapping[str, Any], model: M
     if was.versions.get("clutchwork", mine) != mine:
         found.append(f"clutchwork: {was.versions['clutchwork']} there, {mine} here")
     if found:
-        head = f"{folder} holds a study of something else, so nothing can be added to it:"
-        remedy = "give another folder, or what it was begun with"
+        head = f"{folder} holds another study, so nothing can be added to it:"
+        remedy = "give another folder, or the definition that it was started with"
         raise StudyError("\n".join([head, *(f"  {line}" for line in found), remedy]))
 
 

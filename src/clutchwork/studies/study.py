@@ -44,7 +44,7 @@ FIRST = 4
 
 
 class StudyInterrupted(KeyboardInterrupt):
-    """Ctrl-C during a study; `study` holds what is there, and the same call goes on with the rest."""
+    """Ctrl-C during a study; `study` holds what is there, and the same call continues with the rest."""
 
     def __init__(self, message: str, study: Study) -> None:
         super().__init__(message)
@@ -69,14 +69,14 @@ def study(
     progress: bool | Told = False,
     **changes: Unpack[OptionFields],
 ) -> Study:
-    """Run very many variants into a data set of Parquet files, and go on with one that was ended.
+    """Run very many variants into a data set of Parquet files, or continue one that was interrupted.
 
     Parameters: those of `sweep`, with `vary` best a `cw.design`, and folder, of the data set, on a disk that all
     workers share; chunk, how many variants go into one file, by default so many that a worker needs some seconds.
 
-    Each worker writes what it ran, a chunk at a time; nothing else is kept in memory. The same call goes on after the
-    process was ended in any way, here or on other machines, and at most the chunks that were being run are lost. A
-    study that is complete is read, not run. StudyError where the folder holds a study of another model or design.
+    Each worker writes its results, a chunk at a time; nothing else is kept in memory. The same call continues after an
+    interruption of any kind, here or on other machines, and at most the chunks in progress are lost. A study that is
+    complete is read, not run. StudyError where the folder holds a study of another model or design.
     """
     order, count = ordered("study", model, t_end, vary, outputs, options, changes), threads_of(threads, "study")
     if chunk is not None and (not isinstance(chunk, int) or isinstance(chunk, bool) or chunk < 1):
@@ -171,7 +171,7 @@ class _Going:
                     told(len(made))
         except KeyboardInterrupt:
             made = Study(self.folder, manifest, there(self.folder, manifest.sizes))
-            message = f"interrupted: {len(made)} of {made.count} variants are in {self.folder}; the same call goes on"
+            message = f"interrupted: {len(made)} of {made.count} variants are in {self.folder}; the same call continues"
             raise StudyInterrupted(message, made) from None
         return made
 

@@ -22,7 +22,7 @@ EXAMPLES = (
         "first lock-up, slip at 0.5 s and at 1 s",
     ),
 )
-CODES = "Exit code 1: a variant stopped early, 130: interrupted; what was asked for is written all the same."
+CODES = "Exit code 1: a variant stopped early, 130: interrupted; what was asked for is still written."
 
 
 def add_command(subparsers: Any) -> None:

@@ -217,7 +217,7 @@ def minimum(signal: str) -> Extreme:
 
 @explained("cw.peak")
 def peak(signal: str) -> Extreme:
-    """The largest size of a signal, whatever its sign, for `sweep`."""
+    """The largest absolute value of a signal, for `sweep`."""
     return Extreme(named("peak", signal), "peak")
 
 

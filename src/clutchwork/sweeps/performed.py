@@ -73,7 +73,7 @@ def _report(found: Sweep, asked: argparse.Namespace) -> None:
 
 def _text(found: Sweep) -> list[str]:
     """Counts, and the range of every output."""
-    lines = [("output", "least", "most", "unit")]
+    lines = [("output", "min", "max", "unit")]
     lines += [(name, f"{low:.6g}", f"{high:.6g}", found.units[name]) for name, low, high in _ranges(found)]
     ends = ", ".join(f"{count} {end}" for end, count in _ends(found).items())
     return [f"{counted(len(found), 'variants')}: {ends}", columns(lines, right={1, 2}), *found.without_values()]
@@ -81,12 +81,12 @@ def _text(found: Sweep) -> list[str]:
 
 def _data(found: Sweep) -> dict[str, Any]:
     ranges: dict[str, dict[str, Any]] = {
-        name: {"least": low, "most": high, "unit": found.units[name]} for name, low, high in _ranges(found)
+        name: {"min": low, "max": high, "unit": found.units[name]} for name, low, high in _ranges(found)
     }
     for name in found.names:
         missing = found.without_value(name)
         if name in ranges or missing:
-            none = {"least": None, "most": None, "unit": found.units[name]}
+            none = {"min": None, "max": None, "unit": found.units[name]}
             ranges[name] = {**ranges.get(name, none), "without_value": missing}
     return {"variants": len(found), "status": _ends(found), "outputs": ranges}
 

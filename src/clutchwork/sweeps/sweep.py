@@ -40,7 +40,7 @@ def sweep(
     progress: bool | Told = False,
     **changes: Unpack[OptionFields],
 ) -> Sweep:
-    """Run a Driveline or a System with many sets of values, and keep what is asked for of each run.
+    """Run a Driveline or a System with many sets of values, and keep the chosen outputs of each run.
 
     Parameters: t_end [s], or with a unit, options and their fields by name are those of `simulate`; vary, values by
     name (all combinations), a list with the values of each variant, `cw.variants` or a DataFrame; outputs, what is
@@ -53,8 +53,9 @@ def sweep(
     `cw.break_away`, or a function of the Trajectory;
     a mapping gives them names.
 
-    A variant that stops early has its status, and hurts no other; a value of a function that raises is missing, which
-    is an `OutputWarning`, and `problems` of the result lists all of them. Ctrl-C ends the sweep with what is done.
+    A variant that stops early has its status, and does not affect the others; the value of a function that raises is
+    missing, with an `OutputWarning`, and `problems` of the result lists all of them. Ctrl-C ends the sweep with what is
+    done.
     """
     order, count = ordered("sweep", model, t_end, vary, outputs, options, changes), threads_of(threads)
     with (

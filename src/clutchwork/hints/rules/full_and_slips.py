@@ -40,12 +40,12 @@ def _pulled(slip: FullSlip) -> bool:
 
 def _hint(slip: FullSlip, times: int) -> Hint:
     torque, speed = slip.torque_unit, slip.speed_unit
-    more = f"; {times} such stretches, this one the hottest" if times > 1 else ""
+    more = f"; {times} such phases, this one the hottest" if times > 1 else ""
     message = (
-        f"is full from {slip.begin:.4g} to {slip.end:.4g} s and slips, from {shown(slip.before, speed)} up to"
-        f" {shown(slip.after, speed)}: {shown(slip.needed, torque)} pull at it, it transmits"
-        f" {shown(slip.kinetic, torque)} while it slips and breaks away at {shown(slip.capacity, torque)}; it burns"
-        f" {shown(slip.heat, 'J')}{more}"
+        f"is fully applied from {slip.begin:.4g} to {slip.end:.4g} s and slips, from {shown(slip.before, speed)} up to"
+        f" {shown(slip.after, speed)}: it would have to hold {shown(slip.needed, torque)}, transmits"
+        f" {shown(slip.kinetic, torque)} while it slips and breaks away at {shown(slip.capacity, torque)}; it makes"
+        f" {shown(slip.heat, 'J')} of heat{more}"
     )
     factor = more_than(slip.needed / slip.kinetic)
     remedy = f"give it more than {factor} times the load, gain or coefficient, or less to hold"

@@ -46,11 +46,11 @@ def _too_weak(look: Look, slip: FullSlip) -> Hint:
     torque, speed, name = slip.torque_unit, slip.speed_unit, slip.branch.name
     nearest = min(slip.before, float(np.min(np.abs(look.slip[slip.span.first + 1 :, slip.contact]))))
     # one that passes zero without a stop has no lowest slip
-    lowest = f" and nowhere below {shown(nearest, speed)}" if nearest > 0.0 else ""
+    lowest = f" and never below {shown(nearest, speed)}" if nearest > 0.0 else ""
     message = (
-        f"is full from {slip.begin:.4g} s to the end and never locks: it transmits {shown(slip.kinetic, torque)}"
-        f" while it slips, and {shown(slip.needed, torque)} would just keep its slip from growing, which is"
-        f" {shown(slip.after, speed)} at {slip.end:.4g} s{lowest}"
+        f"is fully applied from {slip.begin:.4g} s to the end and never locks: it transmits"
+        f" {shown(slip.kinetic, torque)} while it slips, but takes {shown(slip.needed, torque)} to keep its slip from"
+        f" growing; the slip is {shown(slip.after, speed)} at {slip.end:.4g} s{lowest}"
     )
     factor = more_than(slip.needed / slip.kinetic)
     remedy = f"give it more than {factor} times the pressure, gain or coefficient, or a lower load"
@@ -61,11 +61,10 @@ def _let_go(slip: FullSlip) -> Hint:
     torque, speed = slip.torque_unit, slip.speed_unit
     more = slip.after * (slip.end - slip.begin) / (slip.before - slip.after)
     message = (
-        f"never locks: it came nearest at {slip.end:.4g} s, with {shown(slip.after, speed)} left of"
-        f" {shown(slip.before, speed)}, where its load fell again; it transmits {shown(slip.kinetic, torque)} while it"
-        " slips"
+        f"never locks: its slip falls from {shown(slip.before, speed)} to {shown(slip.after, speed)} at"
+        f" {slip.end:.4g} s, where its load is taken away; it transmits {shown(slip.kinetic, torque)} while it slips"
     )
-    remedy = f"keep it full for about {more:.3g} s more"
+    remedy = f"keep it fully applied for about {more:.3g} s more"
     return Hint(
         NAME, (slip.branch.name,), message, remedy, _numbers(slip) | {"missing [s]": more}, slip.begin, slip.end
     )

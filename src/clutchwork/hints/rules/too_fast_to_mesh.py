@@ -28,7 +28,7 @@ def too_fast_to_mesh(system: System) -> Iterator[Hint]:
         if slip > dog.speed:
             message = (
                 f"is engaged at the start, but slips there with {shown(slip, 'rad/s')}, above the"
-                f" {shown(dog.speed, 'rad/s')} at which its teeth mesh: it carries nothing"
+                f" {shown(dog.speed, 'rad/s')} at which its teeth mesh: it transmits nothing"
             )
             remedy = "give its shafts the same speed at the start, or let it start out of mesh"
             yield Hint(NAME, (branch.name,), message, remedy, {"slip [rad/s]": slip, "speed [rad/s]": dog.speed})

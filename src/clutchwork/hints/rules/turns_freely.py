@@ -67,6 +67,6 @@ def _hint(look: Look, nodes: list[int], begin: float) -> Hint:
         f"from {begin:.4g} s to the end no element and no closed contact acts on this motion, so nothing slows it down:"
         f" {together(named_speeds[:MOST_NAMED])}{more}"
     )
-    remedy = "where it shall slow down give it drag, such as a Damper or BearingFriction, or keep a contact closed"
+    remedy = "give it drag if it should slow down, such as a Damper or BearingFriction, or keep a contact closed"
     numbers = {f"{node.name} [{SPEED[node.domain]}]": speed for node, speed in zip(named, speeds, strict=True)}
     return Hint(NAME, tuple(node.name for node in named), message, remedy, numbers, begin, look.end)

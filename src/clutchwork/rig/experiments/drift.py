@@ -37,7 +37,7 @@ class Swinging(NamedTuple):
 @experiment
 @dataclass(frozen=True)
 class Drift(Experiment):
-    """Whether a body creeps under a load that swings below break-away.
+    """Whether a body creeps under a load that oscillates below break-away.
 
     A body is pushed over break-away once, then carries a biased sine whose peak stays below the kinetic friction,
     then nothing. Loads are shares of the static force. Use it to see which laws hold a load and which let it creep.

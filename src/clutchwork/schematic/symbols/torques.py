@@ -217,7 +217,7 @@ def _retarder(element: Any) -> list[Point]:
 
 
 def motion_sensor(pen: SymbolPen, shown: Drawn) -> None:
-    """A dial with a needle, on thin lines, for it carries nothing."""
+    """A dial with a needle, on thin lines, for it transmits nothing."""
     pen.circle(0.0, 0.0, 10.5, look=BLANK)
     pen.arc(0.0, -3.0, 8.0, 0.15 * pi, 0.85 * pi, look=THIN)
     pen.line((0.0, -3.0), (4.0, 3.4), look=INK._replace(width=1.2))
