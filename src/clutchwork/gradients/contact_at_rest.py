@@ -57,9 +57,7 @@ def _at_knots(
         moved: Mask = np.any(slopes.matrix[slopes.within(first + PIECE * piece, 1)] != 0.0, axis=0)
         time = float(bounds[piece])
         if moved.any() and run[0] < time < run[1]:
-            what = (
-                f"{system.inputs[number].name} is 0 at its knot at {time:g} s, where it begins or ends"
-            )
+            what = f"{system.inputs[number].name} is 0 at its knot at {time:g} s, where it begins or ends"
             yield time, f"{what}; give that point a value", moved
 
 

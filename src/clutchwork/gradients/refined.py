@@ -75,14 +75,14 @@ class Sharing:
 
 
 @dataclass(frozen=True, eq=False)
-class Inside:
+class WithinSteps:
     """What of a System may bend or jump inside of steps."""
 
     sharing: Sharing | None
     torques: Mapping[str, int]  # of each capacity that is asked for: the column of its torque
 
     @classmethod
-    def of(cls, system: System, ones: Sequence[Extreme]) -> Inside | None:
+    def of(cls, system: System, ones: Sequence[Extreme]) -> WithinSteps | None:
         """That of extremes, None where there is none."""
         known, torques = wiring(system), dict[str, int]()
         for number, contact in enumerate(known.contacts):
