@@ -233,11 +233,16 @@ class Exact:
         """The same by one number in a driveline of its own, which knows no kink but those nearer than it is looked."""
         if number is None:
             return None
-        try:
-            alone = self._with(x, [number], NEARER * STEP)
-            return alone.lines(alone.runs.point(x[[number]]))[1]
-        except (ModelError, NoGradient):
-            return None
+        # of numbers that are not at a kink derivatives of words are better known from farther away
+        for reach in (np.inf, NEARER * STEP):
+            try:
+                alone = self._with(x, [number], reach)
+                return alone.lines(alone.runs.point(x[[number]]))[1]
+            except ModelError:
+                return None
+            except NoGradient:
+                continue
+        return None
 
     def _with(self, x: Array, numbers: Sequence[int], reach: float = np.inf) -> Exact:
         """The same at a point, by some of the numbers.
@@ -249,7 +254,4 @@ class Exact:
             replace(one, start=float(x[number]), reach=min(one.reach, reach * float(sizes[number])))
             for number, one in chosen
         )
-        options = self.task.options
-        if np.isfinite(reach):
-            options = options.changed({"atol": float(options.atol * STEP)})
-        return Exact(replace(self.task, system=self.runs.words.assembled(x), parameters=parameters, options=options))
+        return Exact(replace(self.task, system=self.runs.words.assembled(x), parameters=parameters))

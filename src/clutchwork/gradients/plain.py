@@ -14,7 +14,7 @@ from clutchwork.declare.core import core
 from clutchwork.declare.layout import DONE
 from clutchwork.gradients import extremes
 from clutchwork.gradients.measures import number_of
-from clutchwork.gradients.refined import WithinSteps, Seen, refined
+from clutchwork.gradients.refined import Seen, WithinSteps, refined
 from clutchwork.gradients.steps import NO_STEPS, Steps
 from clutchwork.results.forms import all_reads
 from clutchwork.sweeps.batch import CoreOutputs
