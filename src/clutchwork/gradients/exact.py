@@ -28,6 +28,8 @@ Array = NDArray[np.float64]
 
 # variants of one call without derivatives
 MOST_AT_ONCE = 256
+# reach of a number with no neighbour, right beside zero compared with its own scale all the same
+FAR = 1e300
 # directions that a run carries at the cost of one
 AT_ONCE = 8
 # a run is followed back from so many numbers on, and from so many more for each result
@@ -234,7 +236,7 @@ class Exact:
         if number is None:
             return None
         # of numbers that are not at a kink derivatives of words are better known from farther away
-        for reach in (np.inf, NEARER * STEP):
+        for reach in (FAR, NEARER * STEP):
             try:
                 alone = self._with(x, [number], reach)
                 return alone.lines(alone.runs.point(x[[number]]))[1]
