@@ -304,3 +304,19 @@ def test_a_load_that_is_zero_at_a_knot_alone() -> None:
     tally = judged(d, 0.05, ["a.speed", cw.squared_jerk("a")], ["c.pressure.values[2]", "c.pressure.values[3]"])
     assert tally.wrong + tally.refused + tally.apart == []
     assert tally.rightly == 1
+
+
+@pytest.mark.parametrize("efficiency", [0.66, 0.711])
+def test_a_set_of_gears_with_losses_that_holds_any_load_or_none(efficiency: float) -> None:
+    # seed 71021: its limit is the same for any size of the load, so that its guard jumps where it gives way
+    d = cw.Driveline("set")
+    a, b = d.shaft("a", inertia=0.00365, speed=-2.82), d.shaft("b", inertia=1.3, speed=-52.9)
+    box = {"gearbox": "gm-6t70", "torque": 99.4, "inertia": 0.00498, "gear": "3", "efficiency": efficiency}
+    d.add(cw.Transmission("e", input=a, output=b, **box))
+    d.add(cw.SpringDamper("k", base=d.housing, follower=a, stiffness=345.0))
+    run = d.simulate(0.02, **TIGHT)
+    let_go = {event.element for event in run.events if (event.before, event.cause) == ("locked", "torque limit")}
+    assert {"e.PF", "e.PC", "e.PR"} <= let_go
+    tally = judged(d, 0.02, [cw.break_away("e.PF"), "a.speed"], ["k.stiffness", "a.inertia"])
+    assert tally.wrong + tally.refused + tally.apart == []
+    assert tally.compared == 4

@@ -51,15 +51,13 @@ def _at_knots(
 
     Parameters: first, the word of the first piece; run, its begin and end [s].
     """
-    acts = pieces[:, :4].any(axis=1) | pieces[:, [4, 8]].any(axis=1)
+    acts: Mask = np.asarray(pieces[:, :4].any(axis=1) | pieces[:, [4, 8]].any(axis=1))
     at_zero = (pieces[1:, 0] == 0.0) & ~pieces[1:, [4, 8]].any(axis=1) & acts[1:] & acts[:-1]
     for piece in (np.flatnonzero(at_zero) + 1).tolist():
         moved: Mask = np.any(slopes.matrix[slopes.within(first + PIECE * piece, 1)] != 0.0, axis=0)
         time = float(bounds[piece])
         if moved.any() and run[0] < time < run[1]:
-            what = (
-                f"{system.inputs[number].name} is 0 at its knot at {time:g} s, where it begins or ends"
-            )
+            what = f"{system.inputs[number].name} is 0 at its knot at {time:g} s, where it begins or ends"
             yield time, f"{what}; give that point a value", moved
 
 

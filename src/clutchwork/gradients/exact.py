@@ -28,6 +28,8 @@ Array = NDArray[np.float64]
 
 # variants of one call without derivatives
 MOST_AT_ONCE = 256
+# reach of a number with no neighbour, right beside zero compared with its own scale all the same
+FAR = 1e300
 # directions that a run carries at the cost of one
 AT_ONCE = 8
 # a run is followed back from so many numbers on, and from so many more for each result
@@ -233,11 +235,16 @@ class Exact:
         """The same by one number in a driveline of its own, which knows no kink but those nearer than it is looked."""
         if number is None:
             return None
-        try:
-            alone = self._with(x, [number], NEARER * STEP)
-            return alone.lines(alone.runs.point(x[[number]]))[1]
-        except (ModelError, NoGradient):
-            return None
+        # of numbers that are not at a kink derivatives of words are better known from farther away
+        for reach in (FAR, NEARER * STEP):
+            try:
+                alone = self._with(x, [number], reach)
+                return alone.lines(alone.runs.point(x[[number]]))[1]
+            except ModelError:
+                return None
+            except NoGradient:
+                continue
+        return None
 
     def _with(self, x: Array, numbers: Sequence[int], reach: float = np.inf) -> Exact:
         """The same at a point, by some of the numbers.
@@ -249,7 +256,4 @@ class Exact:
             replace(one, start=float(x[number]), reach=min(one.reach, reach * float(sizes[number])))
             for number, one in chosen
         )
-        options = self.task.options
-        if np.isfinite(reach):
-            options = options.changed({"atol": float(options.atol * STEP)})
-        return Exact(replace(self.task, system=self.runs.words.assembled(x), parameters=parameters, options=options))
+        return Exact(replace(self.task, system=self.runs.words.assembled(x), parameters=parameters))

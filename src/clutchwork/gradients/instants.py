@@ -27,11 +27,14 @@ def add_shift(primal: Primal, step: int, share: float, into: Functional) -> None
 
 def add_turn(primal: Primal, capacity: str, step: int, share: float, into: Functional) -> None:
     """Add a share of the derivative of the instant at which a capacity jumps, as its torque turns round."""
-    steps, columns = primal.steps, primal.columns
-    column = primal.forms[capacity].weights(primal.rows[:1]).columns - columns["contact_capacity"].start
-    place = column + columns["contact_torque"].start
-    rows = steps.rows[step]
+    steps, known = primal.steps, primal.columns["contact_capacity"]
+    columns, rows = primal.forms[capacity].weights(primal.rows[:1]).columns, steps.rows[step]
+    if len(columns) != 1 or not known.start <= columns[0] < known.stop:
+        return
+    place = columns - known.start + primal.columns["contact_torque"].start
     rate = float(steps.left_slope[step] @ primal.rows[rows, int(place[0])])
+    if rate == 0.0:
+        return
     into.add(rows, place, (-share / rate * steps.left[step])[:, None])
 
 

@@ -14,7 +14,7 @@ from clutchwork.declare.core import core
 from clutchwork.declare.layout import DONE
 from clutchwork.gradients import extremes
 from clutchwork.gradients.measures import number_of
-from clutchwork.gradients.refined import Inside, Seen, refined
+from clutchwork.gradients.refined import Seen, WithinSteps, refined
 from clutchwork.gradients.steps import NO_STEPS, Steps
 from clutchwork.results.forms import all_reads
 from clutchwork.sweeps.batch import CoreOutputs
@@ -52,7 +52,7 @@ class PlainRuns:
     wanted: CoreOutputs
     options: Mapping[str, float]
     threads: int
-    inside: Inside | None = None  # what may bend or jump inside of steps
+    inside: WithinSteps | None = None  # what may bend or jump inside of steps
 
     def runs(self, systems: Sequence[bytes], columns: Sequence[int], *, grid: bool, steps: bool) -> list[Run]:
         """One run for each of the bytes; numbers of a row that are kept, at the instants and in the steps."""

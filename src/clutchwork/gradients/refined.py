@@ -75,14 +75,14 @@ class Sharing:
 
 
 @dataclass(frozen=True, eq=False)
-class Inside:
+class WithinSteps:
     """What of a System may bend or jump inside of steps."""
 
     sharing: Sharing | None
     torques: Mapping[str, int]  # of each capacity that is asked for: the column of its torque
 
     @classmethod
-    def of(cls, system: System, ones: Sequence[Extreme]) -> Inside | None:
+    def of(cls, system: System, ones: Sequence[Extreme]) -> WithinSteps | None:
         """That of extremes, None where there is none."""
         known, torques = wiring(system), dict[str, int]()
         for number, contact in enumerate(known.contacts):
@@ -168,6 +168,11 @@ def _meeting(steps: Steps, values: Array, step: int) -> float | None:
     return _zero(apart)
 
 
+def _at(coefficients: Array, place: Array) -> Array:
+    found: Array = np.asarray(polyval(place, coefficients))
+    return found
+
+
 def _zero(f: Callable[[Array], Array]) -> float | None:
     """Where a function of a place in a step passes zero; None where both ends have one sign."""
     low, high = 0.0, 1.0
@@ -185,7 +190,7 @@ def _turns(steps: Steps, capacity: Array, torque: Array) -> Iterator[tuple[int, 
     ends, size = capacity[:, [0, -1]], np.abs(capacity).max(axis=1)
     turns = (torque[:, 0] > 0.0) != (torque[:, -1] > 0.0)
     for step in np.flatnonzero(turns & (np.abs(np.diff(ends, axis=1)[:, 0]) > JUMP * size)).tolist():
-        place = _zero(partial(polyval, c=steps.basis[step] @ torque[step]))
+        place = _zero(partial(_at, steps.basis[step] @ torque[step]))
         least = SHORTEST_TIME * (1.0 + abs(float(steps.begin[step]))) / float(steps.length[step])
         if place is not None and least < place < 1.0 - least:
             yield step, place

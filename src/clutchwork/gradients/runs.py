@@ -17,7 +17,7 @@ from clutchwork.gradients.functional import Functional
 from clutchwork.gradients.knots import knots
 from clutchwork.gradients.plain import Detail, PlainRuns
 from clutchwork.gradients.primal import Knots, Primal
-from clutchwork.gradients.refined import Inside
+from clutchwork.gradients.refined import WithinSteps
 from clutchwork.gradients.signals_at import SignalsAt
 from clutchwork.gradients.steps import NO_STEPS, Steps
 from clutchwork.gradients.task import GradientTask
@@ -99,7 +99,7 @@ class Runs:
     def plain(self) -> PlainRuns:
         """Runs without derivatives."""
         ones = [one for one in self.wanted.outputs.values() if isinstance(one, Extreme)]
-        return PlainRuns(self.wanted, self._options, self.task.threads, Inside.of(self.task.system, ones))
+        return PlainRuns(self.wanted, self._options, self.task.threads, WithinSteps.of(self.task.system, ones))
 
     def sizes(self, x: Array) -> Array:
         """Sizes of the numbers at a point."""

@@ -134,6 +134,7 @@ void note_borders(Form& form, Step<Form>& step) {
   constexpr double near = 1e-9;
   using T = typename Form::Scalar;
   Workspace<T>& ws = form.ws;
+  if (ws.statistics.steps > 0) return;
   GuardList::each([&](auto tag, int place) {
     using G = typename decltype(tag)::type;
     if constexpr (requires { G::each_border(ws, [](int) {}); }) {

@@ -134,15 +134,13 @@ class Phase : public StepSize<typename Form::Scalar> {
     }
     if constexpr (has_tangents<T>) {
       if (event && leave_event(form_, step_)) balance_massless(form_, step_);
+      note_borders(form_, step_);
     }
     ws_.fresh_phase = ws_.stiffened = false;
     // at a knot the row is the right limit, which comes after it
     const Status shown = ws_.time < ws_.in.next_knot ? emit_start(form_, step_, sink_, event) : Status::running;
     if (shown != Status::running) return leave(shown);
     linearize_start();
-    if constexpr (has_tangents<T>) {
-      if (ws_.statistics.steps == 0) note_borders(form_, step_);
-    }
     // kept, so that a run takes the same steps whether or not it is asked for a row here
     if (event) ws_.last_step *= calls_.restart;
     h_ = ws_.last_step > 0 ? ws_.last_step : first_step(taken_form(), taken_step(), t_end_ - ws_.time);
