@@ -425,7 +425,11 @@ def test_only_fields_with_values_have_names():
 
 def test_a_new_object_is_not_what_stood_in_its_memory() -> None:
     """What is made on the way is let go of, and the next one may be made in its place."""
-    new = Renewed({})
+    d = cw.Driveline("two shafts")
+    a, b = d.shaft("a", inertia=1.0), d.shaft("b", inertia=1.0)
+    new = Renewed({id(a): dataclasses.replace(a, inertia=2.0)})
     for number in range(100):
         # its owner lets go of it
-        assert new.of(cw.Coulomb(static=1.0 + number, kinetic=1.0)).static == 1.0 + number
+        made = new.of(cw.Damper("damper", base=a, follower=b, damping=1.0 + number))
+        assert made.base.inertia == 2.0
+        assert made.damping == 1.0 + number
