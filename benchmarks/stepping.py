@@ -11,7 +11,7 @@ import numpy as np
 import clutchwork as cw
 from benchmarks.core import EMPTY, EVENTS_FULL
 from benchmarks.report import Row
-from benchmarks.timing import cpu, rounds
+from benchmarks.timing import cpu, rounds, wall
 from clutchwork import _core
 from support import six_speed
 
@@ -71,3 +71,35 @@ def rows(quick: bool = False) -> Iterator[Row]:
     yield Row("stepping: set, advance 10 ms, read, above the core", f"{found:.1f} us", "<= 15 us", found <= 15.0)
     figures = ", ".join(f"{middle[name]:.0f} us" for name in ("reset", "save", "restore"))
     yield Row("stepping: reset, save, restore", figures)
+    yield from many(quick)
+
+
+def joint() -> cw.Driveline:
+    """A joint drive of a robot: a rotor with a brake that sticks, a gear with losses, a flexible shaft."""
+    d = cw.Driveline("joint")
+    rotor, flange = d.shaft("rotor", inertia=1.5e-4), d.shaft("flange", inertia=0.02)
+    link = d.shaft("link", inertia=0.6)
+    d.add(cw.Torque("motor", shaft=rotor, torque=0.0))
+    stiction = cw.Stribeck(static=0.03, kinetic=0.02, speed=2.0)
+    d.add(cw.Brake("seal", shaft=rotor, friction=stiction, gain=1.0, normal_force=1.0))
+    d.add(cw.LossyGear("gear", input=rotor, output=flange, ratio=100.0, efficiency=0.7))
+    d.add(cw.SpringDamper("spring", base=flange, follower=link, stiffness=8000.0, damping=8.0))
+    return d
+
+
+def many(quick: bool) -> Iterator[Row]:
+    """Steps of 1 ms of many joints side by side, on two threads."""
+    count, steps, scatter = 1024, 20 if quick else 100, np.random.default_rng(1)
+    for what, goal in (("a new torque each", 2e6), ("the torque held", None)):
+        sims = cw.Simulators(joint(), count, threads=2)
+
+        def go(sims: cw.Simulators = sims, held: bool = goal is None) -> None:
+            for step in range(steps):
+                if step == 0 or not held:
+                    sims["motor.torque"] = scatter.uniform(-0.5, 0.5, count)
+                sims.advance(1e-3)
+
+        a_second = count * steps / min(wall(go) for _ in range(3 if quick else 10))
+        words = f"stepping: {count} joints side by side, 1 ms, {what}"
+        met = None if goal is None else a_second >= goal
+        yield Row(words, f"{1e-3 * a_second:.0f} 000 a second", "" if goal is None else ">= 2 million", met)

@@ -210,6 +210,14 @@ int cw_expect_inputs(cw_run* run, int expected) {
   return 1;
 }
 
+int cw_leave_out(cw_run* run, int angles, int work) {
+  if (run == nullptr) return 0;
+  // the steps of such a motion follow its work
+  const int most = run->ws.sys.prescribed > 0 ? 1 : 2;
+  run->ws.out.lacks_angles = angles, run->ws.out.lacks_work = work < most ? work : most;
+  return 1;
+}
+
 int cw_set_param(cw_run* run, std::int64_t offset, double value) {
   if (run == nullptr || !is_finite(value)) return 0;
   Workspace<double>& ws = run->ws;
@@ -305,6 +313,7 @@ int cw_local(cw_run* run, double* row, double* matrix) {
   if (run == nullptr || row == nullptr || matrix == nullptr) return -1;
   const int status = cw_row(run, row);
   if (status == int(Status::done)) fill_local(run->ws, matrix);
+  run->ws.linearized = false;
   return status;
 }
 
@@ -440,6 +449,7 @@ int cw_paste(cw_run* run, const void* copy, std::int64_t bytes) {
   run->ws = other.ws;
   run->ws.poll = poll;
   run->ws.in.expected = expected;
+  run->ws.linearized = false;
   // where everything is in the memory of this run
   bind(run->ws.sys, run->system, run->system_bytes);
   std::memcpy(run->arrays, from + head, std::size_t(bytes - head));

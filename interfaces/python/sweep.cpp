@@ -68,7 +68,7 @@ std::int64_t row_size_of(const Bytes& system) {
 /// Status, details and rows of a grid, what each thread found, and what a signal handler or `progress` raised, or None.
 nb::tuple sweep(std::vector<nb::bytes> systems, std::vector<std::tuple<Whole, Words>> axes, Lines choice,
                 std::vector<Option> options, double t_end, Numbers times, int parts, Whole columns, bool events,
-                int threads, nb::object progress) {
+                int threads, nb::object progress, std::tuple<int, int> lacks) {
   Task task{};
   for (const nb::bytes& system : systems) task.systems.push_back({system.c_str(), std::int64_t(system.size())});
   for (const auto& [place, words] : axes) {
@@ -81,6 +81,7 @@ nb::tuple sweep(std::vector<nb::bytes> systems, std::vector<std::tuple<Whole, Wo
   task.choice = choice.data(), task.variants = std::int64_t(choice.shape(0));
   task.t_end = t_end, task.times = times.data(), task.instants = std::int64_t(times.shape(0)), task.parts = parts;
   task.columns = columns.data(), task.width = std::int64_t(columns.shape(0)), task.events = events;
+  task.lacks_angles = std::get<0>(lacks), task.lacks_work = std::get<1>(lacks);
   check(task);
   for (const Bytes& system : task.systems) check_columns(task, row_size_of(system));
 
@@ -122,5 +123,6 @@ nb::tuple sweep(std::vector<nb::bytes> systems, std::vector<std::tuple<Whole, Wo
 void bind_sweep(nb::module_& m) {
   m.def("sweep", &sweep, nb::arg("systems"), nb::arg("axes"), nb::arg("choice"), nb::arg("options"), nb::arg("t_end"),
         nb::arg("times"), nb::arg("parts"), nb::arg("columns"), nb::arg("events"), nb::arg("threads"),
-        nb::arg("progress").none(), "Runs of many variants of one system, on several threads.");
+        nb::arg("progress").none(), nb::arg("lacks") = std::tuple<int, int>(0, 0),
+        "Runs of many variants of one system, on several threads.");
 }

@@ -39,10 +39,11 @@ struct Task {
   double t_end;
   const double* times;  ///< instants of a grid
   std::int64_t instants;
-  int parts;                    ///< rows in every step, 0: the grid
-  const std::int64_t* columns;  ///< numbers of a row that are kept
-  std::int64_t width;           ///< how many
-  bool events;                  ///< whether they are kept
+  int parts;                     ///< rows in every step, 0: the grid
+  const std::int64_t* columns;   ///< numbers of a row that are kept
+  std::int64_t width;            ///< how many
+  bool events;                   ///< whether they are kept
+  int lacks_angles, lacks_work;  ///< what rows need not have: cw_leave_out
 };
 
 /// Numbers that tell why a run stopped: component, time, value, number of the row.
@@ -112,13 +113,14 @@ class Worker {
     std::vector<std::int64_t> value;    ///< of each axis that these bytes have
     Memory memory;
     std::vector<double> times, rows;
+    std::vector<double> kept_times, kept;  ///< of the rows in steps up to now
     cw_run* run = nullptr;
   };
   Place place_[group];
   Memory together_;
   std::vector<double> event_;
 
-  /// Consecutive variants: on a grid their steps are taken together.
+  /// Consecutive variants, whose steps are taken together.
   void run_group(std::int64_t first, std::int64_t last) {
     cw_member members[group];
     std::int64_t of[group], n = 0, size = 0;
@@ -130,10 +132,12 @@ class Worker {
       size = std::max(size, cw_group_size(p.run));
       of[n++] = v;
     }
-    if (task_.parts == 0) cw_advance_group(members, n, task_.t_end, together_.of(size), size);
+    void* memory = together_.of(size);
+    cw_advance_group(members, n, task_.t_end, memory, size);
+    if (task_.parts > 0) record_steps(members, of, n, first, memory, size);
     for (std::int64_t i = 0; i < n && !course_.stop; ++i) {
       Place& p = place_[of[i] - first];
-      const int status = task_.parts > 0 ? record_steps(p, of[i]) : record_grid(p, of[i], members[i]);
+      const int status = task_.parts > 0 ? close_steps(p, of[i], members[i]) : record_grid(p, of[i], members[i]);
       if (status != int(Status::done)) tell(p, of[i], status);
       results_.status[of[i]] = status;
     }
@@ -147,6 +151,7 @@ class Worker {
       return false;
     }
     for (const auto& [name, value] : task_.options) cw_set_option(p.run, name.c_str(), value);
+    cw_leave_out(p.run, task_.lacks_angles, task_.lacks_work);
     cw_set_poll(p.run, &Course::stopped, &course_);
     for (std::int64_t i = 0; i < task_.instants && task_.parts == 0; ++i) p.times[std::size_t(i)] = task_.times[i];
     return true;
@@ -205,23 +210,39 @@ class Worker {
     return status;
   }
 
-  int record_steps(Place& p, std::int64_t v) {
-    std::int64_t total = 0, filled = 0;
-    int status;
-    do {
-      status = cw_advance(p.run, task_.t_end, p.times.data(), p.rows.data(), std::int64_t(p.times.size()), task_.parts,
-                          &filled);
-      const std::size_t at = found.values.size();
-      found.values.resize(at + std::size_t(filled * task_.width));
-      for (std::int64_t i = 0; i < filled; ++i)
-        keep(p.rows.data() + i * p.row_size, found.values.data() + at + std::size_t(i * task_.width));
-      found.times.insert(found.times.end(), p.times.begin(), p.times.begin() + filled);
-      total += filled;
-      take_events(p.run, v);
-    } while (goes_on(status));
+  /// Rows in steps of a group that has been advanced: those of all are taken away, and who has more goes on.
+  void record_steps(cw_member* members, const std::int64_t* of, std::int64_t n, std::int64_t first, void* memory,
+                    std::int64_t size) {
+    cw_member more[group];
+    std::int64_t who[group], left = 0;
+    for (std::int64_t i = 0; i < n; ++i) who[left] = i, more[left++] = members[i];
+    while (left > 0) {
+      std::int64_t on = 0;
+      for (std::int64_t i = 0; i < left; ++i) {
+        take_steps(place_[of[who[i]] - first], of[who[i]], more[i].filled);
+        members[who[i]] = more[i];
+        if (goes_on(more[i].status)) who[on] = who[i], more[on++] = more[i];
+      }
+      left = on;
+      if (left > 0) cw_advance_group(more, left, task_.t_end, memory, size);
+    }
+  }
+  void take_steps(Place& p, std::int64_t v, std::int64_t filled) {
+    const std::size_t at = p.kept.size();
+    p.kept.resize(at + std::size_t(filled * task_.width));
+    for (std::int64_t i = 0; i < filled; ++i)
+      keep(p.rows.data() + i * p.row_size, p.kept.data() + at + std::size_t(i * task_.width));
+    p.kept_times.insert(p.kept_times.end(), p.times.begin(), p.times.begin() + filled);
+    take_events(p.run, v);
+  }
+  /// The rows of a variant, behind those of the variants before it.
+  int close_steps(Place& p, std::int64_t v, const cw_member& member) {
     found.variant.push_back(v);
-    found.rows.push_back(total);
-    return status;
+    found.rows.push_back(std::int64_t(p.kept_times.size()));
+    found.times.insert(found.times.end(), p.kept_times.begin(), p.kept_times.end());
+    found.values.insert(found.values.end(), p.kept.begin(), p.kept.end());
+    p.kept_times.clear(), p.kept.clear();
+    return member.status;
   }
 
   void keep(const double* row, double* to) const {

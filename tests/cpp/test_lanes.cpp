@@ -143,6 +143,7 @@ void with_rows_and_integrals() {
     advances(variants(make, 8, 3), 1.5, {.instants = 37});
     advances(variants(make, 5, 4), 1.5, {.instants = 11, .integrals = true});
     advances(variants(make, 8, 5), 1.5, {.steps = 1});
+    advances(variants(make, 8, 5), 1.5, {.steps = 4});
     advances(variants(make, 8, 6), 1.5, {.integrals = true});
   }
 }

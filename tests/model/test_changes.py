@@ -17,7 +17,7 @@ from clutchwork.assembly.wiring import wiring
 from clutchwork.declare.node import Law, Signal
 from clutchwork.declare.schema import REGISTRY, Role, Spec, specs
 from clutchwork.elements.bases.shift_elements import LINING
-from clutchwork.model.changes import FIXED, PLACES, all_names, field_of, named, target
+from clutchwork.model.changes import FIXED, PLACES, Renewed, all_names, field_of, named, target
 from clutchwork.results.channels import Channels
 from support import random_drivelines, samples, six_speed
 from support.amount import amount
@@ -421,3 +421,15 @@ def test_only_fields_with_values_have_names():
     assert {"w1.inertia", "w1.speed", "w1.angle", "F1.gain", "F1.friction.fast", "F1.pressure.points"} <= names
     assert not any(name.rpartition(".")[2] in FIXED for name in names)
     assert not isinstance(d.elements[0], Law)
+
+
+def test_a_new_object_is_not_what_stood_in_its_memory() -> None:
+    """What is made on the way is let go of, and the next one may be made in its place."""
+    d = cw.Driveline("two shafts")
+    a, b = d.shaft("a", inertia=1.0), d.shaft("b", inertia=1.0)
+    new = Renewed({id(a): dataclasses.replace(a, inertia=2.0)})
+    for number in range(100):
+        # its owner lets go of it
+        made = new.of(cw.Damper("damper", base=a, follower=b, damping=1.0 + number))
+        assert made.base.inertia == 2.0
+        assert made.damping == 1.0 + number

@@ -5,6 +5,7 @@ from __future__ import annotations
 import pickle
 import subprocess
 import sys
+import warnings
 from pathlib import Path
 from typing import Any
 
@@ -15,6 +16,7 @@ import clutchwork as cw
 from clutchwork.base import archive
 from clutchwork.run.save import RUN_PARTS, RunFormatError
 from support.amount import seeds
+from support.any_model import model
 from support.random_contacts import driveline as random_contacts
 from support.random_drivelines import T_END, describe
 
@@ -29,6 +31,33 @@ def same(one: cw.Trajectory, other: cw.Trajectory) -> None:
     assert one.time.tobytes() == other.time.tobytes()
     assert one.rows.tobytes() == other.rows.tobytes()
     assert one.events == other.events
+
+
+@pytest.mark.parametrize("seed", range(9200, 9200 + 2 * CASES))
+def test_a_closed_loop_goes_on_as_from_its_states(seed: int) -> None:
+    """What one call leaves for the next is nothing but time: rows and events are those of a run that is put there."""
+    rng = np.random.default_rng(seed)
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore")
+        system = cw.Driveline.from_dict(model.model(seed)).assemble()
+        try:
+            goes_on, anew = cw.Simulator(system), cw.Simulator(system)
+            names = [name for name, unit in goes_on.units.items() if unit]
+            inputs = [item.name for item in system.inputs if item.name in names and not item.signal.sampling()]
+            goes_on.advance(1e-3)
+            for _ in range(12):
+                anew.restore(goes_on.save())
+                before = len(goes_on.events)
+                for name in inputs[: int(rng.integers(0, 3))]:
+                    value = goes_on[name] * rng.uniform(0.8, 1.2)
+                    goes_on.set(name, value)
+                    anew.set(name, value)
+                goes_on.advance(2e-3)
+                anew.advance(2e-3)
+                assert [goes_on[name] for name in names] == [anew[name] for name in names]
+                assert list(goes_on.events)[before:] == list(anew.events)
+        except (cw.SimulationError, cw.ModelError, cw.UseError):
+            pytest.skip("a model that cannot be stepped")
 
 
 def tail(run: cw.Trajectory, begin: float) -> tuple[np.ndarray, np.ndarray]:

@@ -112,6 +112,27 @@ def test_random_drivelines_random_names():
     over_seeds(check, amount(40))
 
 
+def test_what_no_output_reads_has_no_say():
+    """Work and angles that nobody reads are left out: each output alone has the bits that it has beside all others."""
+
+    def check(seed: int) -> str:
+        system = random_drivelines.describe(seed).driveline().assemble()
+        t_end, node = random_drivelines.T_END, system.nodes[0]
+        asked = [
+            *outputs(system, t_end),
+            cw.peak(f"{node.name}.acceleration"),
+            cw.squared_jerk(node.name),
+        ]
+        vary = {f"{node.name}.inertia": np.linspace(0.9, 1.1, 3) * (node.inertia or 1.0)}
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore")
+            whole = cw.sweep(system, t_end, vary=vary, outputs=asked, **OPTIONS)
+            alone = [cw.sweep(system, t_end, vary=vary, outputs=[one], **OPTIONS) for one in asked]
+        return ", ".join(name for one in alone for name in one.names if not same(one[name], whole[name]))
+
+    over_seeds(check, amount(20))
+
+
 def _values(system: cw.System, name: str, rng: np.random.Generator) -> list[float]:
     owner: Any = {t.name: t for t in (*system.nodes, *system.source.elements)}[name.split(".")[0]]
     for word in name.split(".")[1:]:

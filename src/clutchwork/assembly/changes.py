@@ -7,7 +7,7 @@ from copy import deepcopy
 from dataclasses import fields, replace
 from functools import cache, partial
 from types import MappingProxyType
-from typing import TYPE_CHECKING, Any, NamedTuple, TypeVar
+from typing import TYPE_CHECKING, Any, NamedTuple, TypeVar, cast
 
 from clutchwork.assembly.assemble import assembled
 from clutchwork.assembly.masses import masses
@@ -67,8 +67,8 @@ def _with(system: S, found: Quick) -> S:
             array.flags.writeable = False
             data[system.starts[name] : system.starts[name] + array.nbytes] = array.tobytes()
     made, arrays = object.__new__(type(system)), MappingProxyType(found.arrays)
-    own = vars(system)
-    vars(made).update({name: own[name] for name in _kept_names(type(system))})
+    own, kind = vars(system), cast(Any, type(system))
+    vars(made).update({name: own[name] for name in _kept_names(kind)})
     numbers = system.numbered._replace(arrays=arrays)
     vars(made).update({"arrays": arrays, "numbered": numbers, MAKES: partial(found.made, system)})
     # what follows from its structure alone
@@ -77,7 +77,7 @@ def _with(system: S, found: Quick) -> S:
 
 
 @cache
-def _kept_names(cls: type) -> tuple[str, ...]:
+def _kept_names(cls: Any) -> tuple[str, ...]:
     """Names of what a changed System has of the one before it."""
     return tuple(item.name for item in fields(cls) if item.name not in LATER)
 

@@ -363,15 +363,17 @@ class Renewed:
     """New objects in the place of old ones, and of all that refer to those."""
 
     given: Mapping[int, Any]  # old object by identity -> the one with other values
-    made: dict[int, Any] = field(default_factory=dict)  # old object by identity -> what stands in its place
+    # old object by identity -> itself, and what stands in its place
+    made: dict[int, tuple[Any, Any]] = field(default_factory=dict)
     parts: dict[str, list[Any]] = field(default_factory=dict)  # of renewed composites, by name
 
     def of(self, value: Any) -> Any:
         """What stands in the place of a value."""
         key = id(value)
         if key not in self.made:
-            self.made[key] = self._renewed(value, self.given.get(key))
-        return self.made[key]
+            # kept beside it, so that nothing else gets its identity
+            self.made[key] = value, self._renewed(value, self.given.get(key))
+        return self.made[key][1]
 
     def _renewed(self, value: Any, given: Any) -> Any:
         if isinstance(value, Node | ThermalNode):

@@ -20,7 +20,7 @@ from clutchwork.results.channels import Channels, channels
 from clutchwork.results.forms import LOCKED, all_reads, is_of_structure
 from clutchwork.sweeps.axes import Plan, systems_of
 from clutchwork.sweeps.outputs import AtEnd, AtTimes, Computed, Extreme, Integral, Output, SquaredJerk, When
-from clutchwork.sweeps.parts import PARTS, squared_jerk, steps_of
+from clutchwork.sweeps.parts import PARTS, lacks, squared_jerk, steps_of
 
 if TYPE_CHECKING:
     from clutchwork.assembly.system import System
@@ -223,20 +223,11 @@ class Batch:
         grid = np.zeros(0) if parts else self.wanted.grid
         systems = [system.to_bytes() for system in call.systems]
         threads = min(self.way.threads, max(1, len(call.who) // 2))
-        columns = np.array(forms.columns, dtype=np.int64)
+        columns, events = np.array(forms.columns, dtype=np.int64), self.wanted.events
+        lacked = lacks(call.systems[0].counts, forms.columns, forms.inside, parts)
         return Native(
             *core().sweep(
-                systems,
-                axes,
-                choice,
-                options,
-                self.way.t_end,
-                grid,
-                parts,
-                columns,
-                self.wanted.events,
-                threads,
-                progress,
+                systems, axes, choice, options, self.way.t_end, grid, parts, columns, events, threads, progress, lacked
             )
         )
 
@@ -288,6 +279,8 @@ class Forms:
             found, which = made[names]
             whole[name] = [signals[name].evaluate for signals in found], which
         self.columns = sorted(all_reads(form for forms, _ in whole.values() for form in forms))
+        in_steps = wanted.signals(*IN_STEPS)
+        self.inside = all_reads(form for name, (forms, _) in whole.items() if name in in_steps for form in forms)
         places = {column: place for place, column in enumerate(self.columns)}
         self.forms = {name: ([form.over(places) for form in forms], which) for name, (forms, which) in whole.items()}
 

@@ -184,7 +184,7 @@ class Together {
     for (int i = 0; i < n_lanes; ++i) {
       if (!active_[i] || !counts_[i]) continue;
       StepSize<double>& one = pace(i);
-      if (doubtful[i] || one.ws_.options.work || one.ws_.options.angles || one.has_rows(1)) {
+      if (doubtful[i] || has_work(one.ws_) || has_angles(one.ws_) || one.has_rows(1)) {
         unload(i);
         phase_[i]->settle_given();
         visited_[i] = true;

@@ -4,6 +4,13 @@
 /// Two forms of the same reduced motion M dz/dt = sum of row' torque, behind one set of functions.
 namespace clutchwork {
 
+/// What a solve needs of a branch with one state: its row, its inverse, what it pushes and what its rate does to it.
+template <class T>
+struct OneState {
+  const T* row;
+  T inverse, push, gain;
+};
+
 /// Up to a handful of speeds: M = 1, dense rows. NZ, NS: numbers of speeds and of states where the compiler knows them,
 /// else -1; in memory all of them are alike.
 template <class T, int NZ = -1, int NS = -1>
@@ -11,9 +18,12 @@ struct SmallForm {
   using Scalar = T;
   static constexpr bool small = true, full = false;
   static constexpr int fixed_size = NZ >= 0 && NS >= 0 ? NZ + NS : 0;
+  static constexpr bool has_one_state = NS == 1;
   Workspace<T>& ws;
   const int speeds, states;
   T w[small_speeds * small_speeds];
+  int own[small_states], n_own = 0;  ///< branches with states, since the last factor
+  OneState<T> one;                   ///< where the compiler knows that there is one state
 
   explicit SmallForm(Workspace<T>& workspace) : SmallForm(workspace, workspace.reduced.nz, int(workspace.sys.states)) {}
   SmallForm(Workspace<T>& workspace, int n_speeds, int n_states) : ws(workspace), speeds(n_speeds), states(n_states) {}
@@ -87,6 +97,7 @@ struct SmallForm {
 template <class T>
 struct SparseForm {
   using Scalar = T;
+  static constexpr bool has_one_state = false;
   static constexpr bool small = false, full = false;
   static constexpr int fixed_size = 0;
   Workspace<T>& ws;

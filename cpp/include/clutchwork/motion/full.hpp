@@ -191,8 +191,14 @@ template <class T, class S>
   pose_loads(form, e);
   if (ws.ratios.n > 0) couple_loads(ws, e, form.nz());
   // a singular one gives no finite torque, which ends the run
-  factor_lu(m, e.coupling, e.pivot);
-  solve_lu(m, e.coupling, e.pivot, e.followed);
+  if (m > 1) {
+    factor_lu(m, e.coupling, e.pivot);
+    solve_lu(m, e.coupling, e.pivot, e.followed);
+  } else {
+    e.pivot[0] = 0;
+    if (abs(value(e.coupling[0])) > 0) e.coupling[0] = S(T(1)) / e.coupling[0];
+    e.followed[0] *= e.coupling[0];
+  }
   for (int j = 0; j < m; ++j) {
     const int k = ws.loads.branch[j];
     e.torque[k] = e.followed[j];
@@ -347,9 +353,18 @@ void linearize_whole(FullForm<T>& form, Real<T> t, const T* y, T* d, T* dt, Step
 template <class T>
 void drift_whole(FullForm<T>& form, const T* y, const T* velocity, const T* state_rates, T* torque, T* drift) {
   Workspace<T>& ws = form.ws;
+  const int nz = form.nz(), n = form.n();
+  if (n < Full<T>::chunk && ws.ratios.n == 0) {
+    // all derivatives are there since the motion was linearized
+    for (int k = 0; k < ws.n_branches; ++k) {
+      const auto& by = ws.full.some.torque[k];
+      torque[k] = by.v;
+      drift[k] = by.d[n] + dot(nz, by.d, velocity) + dot(n - nz, by.d + nz, state_rates);
+    }
+    return;
+  }
   Whole<Dual<T, 1>>& e = ws.full.along;
   e.time = 0;
-  const int nz = form.nz();
   for (int i = 0; i < form.n(); ++i) {
     e.y[i] = Dual<T, 1>(y[i]);
     e.y[i].d[0] = i < nz ? velocity[i] : state_rates[i - nz];

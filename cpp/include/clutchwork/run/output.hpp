@@ -160,9 +160,12 @@ void fill_numbers(Form& form, Step<Form>& step, double s, double s_end, R* row) 
   Workspace<T>& ws = form.ws;
   const auto& sys = ws.sys;
   for (int n = 0; n < sys.nodes; ++n) ws.out.angle[n] = ws.angle[n];
-  if (ws.options.angles && s > 0) angles_at(form, step, s, ws.out.angle);
-  const bool fitted = ws.options.work && s > 0;
+  // the last row of a step is at its end within round-off
+  const bool inside = s < s_end * (1 - 1e-9);
+  if (has_angles(ws) && s > 0 && !(inside && ws.out.lacks_angles > 0)) angles_at(form, step, s, ws.out.angle);
+  const bool fitted = has_work(ws) && s > 0 && !(inside && ws.out.lacks_work > 0);
   if (fitted) work_until(form, step, s, s_end);
+  ws.out.until = s;
   const Snapshot<T> shot = take_snapshot(form, step, s);
   fill_nodes(ws, shot, row);
   for (int i = 0; i < sys.states; ++i) row[ws.row.state + i] = shown<R>(shot.y[form.nz() + i]);
@@ -286,14 +289,16 @@ bool row_jumps(const Workspace<T>& ws, const Sink& sink) {
          jumps(ws.row.contact_torque, ws.sys.contacts, round_off);
 }
 
-/// Take the integrals over the step up to s into the state.
+/// Take the integrals over the step up to s into the state; `shown`: a row there has them.
 template <class Form>
-void accumulate(Form& form, Step<Form>& step, double s) {
+void accumulate(Form& form, Step<Form>& step, double s, bool shown) {
   using T = typename Form::Scalar;
   Workspace<T>& ws = form.ws;
-  if (ws.options.angles) angles_at(form, step, s, ws.angle);
-  if (!ws.options.work) return;
-  for (int i = 0; i < fitted_powers(ws); ++i) work_of(ws, i) += fitted_work(ws, i, 1.0, s * step.h);
+  if (has_angles(ws) && !shown) angles_at(form, step, s, ws.angle);
+  for (int n = 0; shown && has_angles(ws) && n < ws.sys.nodes; ++n) ws.angle[n] = ws.out.angle[n];
+  if (!has_work(ws)) return;
+  for (int i = 0; i < fitted_powers(ws); ++i)
+    work_of(ws, i) += shown ? ws.out.since[i] : fitted_work(ws, i, 1.0, s * step.h);
 }
 
 }  // namespace clutchwork

@@ -112,12 +112,16 @@ class Phase : public StepSize<typename Form::Scalar> {
     const double zero = ws_.guard.zero;
     export_state(form_, step_.y0());
     ws_.guard.zero = zero;
+    // these leave between two steps
+    const bool whole = status == Status::done || status == Status::rows_full || status == Status::events_full;
+    ws_.linearized = whole && tells_all(form_);
     status_ = status;
     over_ = true;
   }
 
   [[gnu::noinline]] void begin() {
-    const bool fresh = ws_.fresh_phase, event = fresh && !ws_.stiffened;
+    const bool fresh = ws_.fresh_phase, event = fresh && !ws_.stiffened, linearized = ws_.linearized && !fresh;
+    ws_.linearized = false;
     if (fresh) ws_.guard.zero = slip_tolerance(ws_);
     if constexpr (!Form::small) {
       if (fresh) form_.solve_mass(ws_.reduced.y);
@@ -140,7 +144,8 @@ class Phase : public StepSize<typename Form::Scalar> {
     // at a knot the row is the right limit, which comes after it
     const Status shown = ws_.time < ws_.in.next_knot ? emit_start(form_, step_, sink_, event) : Status::running;
     if (shown != Status::running) return leave(shown);
-    linearize_start();
+    // counted as one, so that a run counts alike wherever it is left
+    linearized ? void(++ws_.statistics.jacobians) : linearize_start();
     // kept, so that a run takes the same steps whether or not it is asked for a row here
     if (event) ws_.last_step *= calls_.restart;
     h_ = ws_.last_step > 0 ? ws_.last_step : first_step(taken_form(), taken_step(), t_end_ - ws_.time);
@@ -264,9 +269,9 @@ class Phase : public StepSize<typename Form::Scalar> {
 
   void meet_knot() {
     if constexpr (has_tangents<T>) move_with(form_, step_, knot_shift(ws_));
-    rest_step(form_, step_);
+    if (!tells_all(form_)) rest_step(form_, step_);
     export_state(form_, step_.y0());
-    note_before(form_, step_, 0.0);
+    tells_all(form_) ? note_start(form_) : note_before(form_, step_, 0.0);
     if (knots_crowd(ws_)) return leave(Status::zeno);
     const bool jumps = (!Form::small || sink_.steps > 0) && any_jumps(ws_);
     if (knot_decides(ws_)) return decide(Cause::input);
@@ -446,22 +451,23 @@ class Phase : public StepSize<typename Form::Scalar> {
     if (ws_.options.work) fit_power(form_, step_, 1.0);
     const Status shown = rows ? emit(form_, step_, 1.0, end, sink_) : Status::running;
     if (shown != Status::running) return leave(shown), false;
-    accumulate(form_, step_, 1.0);
+    accumulate(form_, step_, 1.0, false);
     return true;
   }
 
   /// Rows and integrals of the step up to the share s. False: a row is not finite, or the caller wants to stop.
   CLUTCHWORK_INLINE bool write(double s) {
     const bool rows = has_rows(s);
-    if (!(rows || ws_.options.work || ws_.options.angles) || s <= 0) return true;
+    if (!(rows || has_work(ws_) || has_angles(ws_)) || s <= 0) return true;
     fit(form_, step_);
-    if (ws_.options.work) fit_power(form_, step_, s);
+    if (has_work(ws_)) fit_power(form_, step_, s);
+    ws_.out.until = -1;
     const Status shown = rows ? emit(form_, step_, s, time_at(s), sink_) : Status::running;
     if (shown != Status::running) {
       leave(shown);
       return false;
     }
-    accumulate(form_, step_, s);
+    accumulate(form_, step_, s, rows && ws_.out.until == s);
     return true;
   }
 

@@ -40,6 +40,7 @@ void each_placed(Workspace<T>& ws, F&& f) {
 template <class T>
 void place_input(Workspace<T>& ws, int i, double value, double slope) {
   auto& signal = ws.in.signal[i];
+  ws.linearized = false;
   signal.held = value;
   if (!is_held(ws, i)) signal.given = true, seek(ws, i, ws.time);
   for (int ref = 0; ref < ws.in.n_refs; ++ref) {
@@ -51,6 +52,7 @@ void place_input(Workspace<T>& ws, int i, double value, double slope) {
 template <class T>
 void take_placed(Workspace<T>& ws, double t, const double* x) {
   ws.time = t;
+  ws.linearized = false;
   each_placed(ws, [&](std::int64_t i, T& place) { place = x[i]; });
   ws.in.time = -infinity;
   inputs_at(ws, t);

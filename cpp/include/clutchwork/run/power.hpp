@@ -27,6 +27,16 @@ struct Gauss {
 };
 inline constexpr Gauss gauss{};
 
+/// Whether angles and work are integrated: they are asked for, and somebody reads them.
+template <class T>
+CLUTCHWORK_INLINE bool has_angles(const Workspace<T>& ws) {
+  return ws.options.angles && ws.out.lacks_angles < 2;
+}
+template <class T>
+CLUTCHWORK_INLINE bool has_work(const Workspace<T>& ws) {
+  return ws.options.work && ws.out.lacks_work < 2;
+}
+
 /// Numbers of fitted powers: directions, prescribed speeds, supplies, meters.
 template <class T>
 CLUTCHWORK_INLINE int fitted_powers(const Workspace<T>& ws) {

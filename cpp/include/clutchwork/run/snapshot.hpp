@@ -102,17 +102,58 @@ T source_torque(const Workspace<T>& ws, const Snapshot<T>& shot, int p) {
   return torque;
 }
 
-/// How all contacts are at s, right before an event.
+/// How all contacts are right before an event, where the torques of all directions were looked at; slope(k) of branch
+/// k.
+template <class T, class F>
+void note_contacts(Workspace<T>& ws, F&& slope) {
+  for (int c = 0; c < ws.sys.contacts; ++c) {
+    const int d = int(ws.sys.elements) + c, k = ws.branch_of[d];
+    ws.event_context.torque[c] = ws.out.torque[d];
+    ws.event_context.slope[c] = k >= 0 ? slope(k) : T(0);
+    ws.event_context.mode[c] = ws.contact.mode[c];
+  }
+}
+
+/// The same at s.
 template <class Form>
 void note_before(Form& form, Step<Form>& step, double s) {
   auto& ws = form.ws;
   const auto shot = take_snapshot(form, step, s);
-  for (int c = 0; c < ws.sys.contacts; ++c) {
-    const int d = int(ws.sys.elements) + c, k = ws.branch_of[d];
-    ws.event_context.torque[c] = ws.out.torque[d];
-    ws.event_context.slope[c] = k >= 0 ? form.rate(k, shot.d) + offset_slope(ws, k) : 0.0;
-    ws.event_context.mode[c] = ws.contact.mode[c];
+  note_contacts(ws, [&](int k) { return form.rate(k, shot.d) + offset_slope(ws, k); });
+}
+
+/// Whether the derivatives at one end of a step tell all that a snapshot does: speeds without inertia and transmissions
+/// ask for more.
+template <class Form>
+bool tells_all(const Form& form) {
+  using T = typename Form::Scalar;
+  if constexpr (has_tangents<T>) {
+    return false;
+  } else if constexpr (Form::small) {
+    return true;
+  } else {
+    return form.ws.ratios.n == 0 && !any_massless(form);
   }
+}
+
+/// The same where a step starts, from its derivatives.
+template <class Form>
+void note_start(Form& form) {
+  using T = typename Form::Scalar;
+  Workspace<T>& ws = form.ws;
+  const int ne = int(ws.sys.elements);
+  for (int d = 0; d < ws.n_directions; ++d) {
+    const int k = ws.branch_of[d];
+    ws.out.torque[d] = T(0);
+    if (k < 0 || k >= ws.n_branches) continue;
+    if constexpr (Form::full)
+      ws.out.torque[d] = ws.full.some.torque[k].v;
+    else
+      ws.out.torque[d] = ws.jacobian.partial[k].torque;
+  }
+  locked_torques(ws, ws.step_start.multiplier, [&](int c, T x) { ws.out.torque[ne + c] += x; });
+  if (ws.sys.loads > 0) input_slopes_at(ws, ws.time), loads_of_all(ws, ws.out.torque, ws.loads.now);
+  note_contacts(ws, [&](int k) { return ws.step_start.slope[k]; });
 }
 
 }  // namespace clutchwork

@@ -92,6 +92,8 @@ struct Output {
   T* power = nullptr;                     ///< of each direction, source, supply and meter, as cubics
   T* since = nullptr;                     ///< work of each of them since the start of the step
   int is_rough = -1;                      ///< whether the cubics miss much inside of the step; -1: not known
+  int lacks_angles = 0, lacks_work = 0;   ///< whether rows lack them: 1 inside of steps, 2 everywhere
+  double until = -1;                      ///< share of the step of the last row in it, -1: it has none
   T *whole = nullptr, *halves = nullptr;  ///< work of each branch over a step and its halves
   double shown = 0;                       ///< [s] last row in a step
   bool skipped = false;                   ///< the last step was too short for rows

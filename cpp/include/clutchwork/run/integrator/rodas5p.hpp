@@ -78,15 +78,20 @@ struct Rodas5P {
   static CLUTCHWORK_HOT Truth<T> factor_motion(Form& form, T scale) {
     Workspace<T>& ws = form.ws;
     T* stiff = ws.stages.stiff;
+    if constexpr (Form::small) form.n_own = 0;
     for (int k = 0; k < ws.n_branches; ++k) {
       const Branch<T>& b = ws.branch[k];
       stiff[k] = ws.jacobian.partial[k].by_rate;
       if (b.states == 0) continue;
+      if constexpr (Form::small) form.own[form.n_own++] = k;
       T* inverse = ws.stages.inverse + ws.jacobian.block[k];
       const T* g = ws.jacobian.g_state + ws.jacobian.block[k];
       if (b.states == 1) {
         inverse[0] = T(1) / (scale - g[0]);
-        stiff[k] += ws.jacobian.f_state[b.state] * inverse[0] * ws.jacobian.g_rate[b.state];
+        const T push = ws.jacobian.f_state[b.state], rate = ws.jacobian.g_rate[b.state];
+        stiff[k] += push * inverse[0] * rate;
+        if constexpr (Form::has_one_state)
+          form.one = {ws.reduced.row_z + k * form.nz(), inverse[0], push, T(0) + inverse[0] * rate};
         continue;
       }
       // no component with more states computes with lanes
@@ -102,6 +107,18 @@ struct Rodas5P {
     return form.factor(scale, stiff);
   }
 
+  /// Call f for each branch with states.
+  template <class Form, class F>
+  static CLUTCHWORK_HOT void each_own(const Form& form, F&& f) {
+    if constexpr (Form::small) {
+      for (int i = 0; i < form.n_own; ++i) f(form.own[i]);
+    } else {
+      for (int k = 0; k < form.ws.n_branches; ++k) {
+        if (form.ws.branch[k].states > 0) f(k);
+      }
+    }
+  }
+
   /// As solve, with the shared states held: own states condensed out and put back.
   template <class Form, class X, class T = typename Form::Scalar>
   static CLUTCHWORK_HOT void solve_motion(Form& form, X* b) {
@@ -112,9 +129,20 @@ struct Rodas5P {
       return;
     }
     X* own = b + nz;
-    for (int k = 0; k < ws.n_branches; ++k) {
+    if constexpr (Form::has_one_state) {
+      // the same operations, without the way to its numbers
+      if (form.n_own == 0) return form.solve(b);
+      const auto& one = form.one;
+      const T found = own[0] * one.inverse, push = found * one.push;
+      for (int i = 0; i < nz; ++i) b[i] += one.row[i] * push;
+      form.solve(b);
+      T rate = T(0);
+      for (int i = 0; i < nz; ++i) rate += one.row[i] * b[i];
+      own[0] = found + one.gain * rate;
+      return;
+    }
+    each_own(form, [&](int k) CLUTCHWORK_HOT_LAMBDA {
       const Branch<T>& br = ws.branch[k];
-      if (br.states == 0) continue;
       const T* inverse = ws.stages.inverse + ws.jacobian.block[k];
       X push = X(0);
       if (br.states == 1) {
@@ -127,16 +155,15 @@ struct Rodas5P {
         push = dot(br.states, ws.jacobian.f_state + br.state, found);
       }
       form.push(k, push, b);
-    }
+    });
     form.solve(b);
-    for (int k = 0; k < ws.n_branches; ++k) {
+    each_own(form, [&](int k) CLUTCHWORK_HOT_LAMBDA {
       const Branch<T>& br = ws.branch[k];
-      if (br.states == 0) continue;
       const T* inverse = ws.stages.inverse + ws.jacobian.block[k];
       const X rate = form.rate(k, b);
       for (int i = 0; i < br.states; ++i)
         add_times(dot(br.states, inverse + i * br.states, ws.jacobian.g_rate + br.state), rate, own[br.state + i]);
-    }
+    });
   }
 
   /// The point of stage s from those before, in u.
