@@ -95,8 +95,6 @@ CLUTCHWORK_HOT S computed(std::size_t word, Operand<S> a, Operand<S> b, const S*
       return sign_of(a);
     case Operation::less:
       return select(a < b, S(1), S(0));
-    case Operation::at_most:
-      return select(a <= b, S(1), S(0));
     case Operation::pick:
       return select(value(r[word / words_per_operation]) != 0, a, b);
   }

@@ -37,10 +37,10 @@ struct DynamicFormula : declared::DynamicFormula {
   static void state_rates(const Params<T>& p, const At<S>& at, S* rates) {
     coefficient_and_rates(p, at, rates);
   }
-  template <class T>
-  static T hold(const Params<T>& p, const At<T>& at) {
-    const Program<T, Point<T>> program(p, at.points);
-    Registers<T> r;
+  template <class T, class S>
+  static S hold(const Params<T>& p, const At<S>& at) {
+    const Program<T, Point<S>> program(p, at.points);
+    Registers<S> r;
     program.run(at, around(at), count(p), program.for_all(), r.at);
     return r.at[program.at_rest()];
   }

@@ -21,12 +21,12 @@ struct Formula : declared::Formula {
     return larger(r.at[program.coefficient()], S(0));
   }
   /// The kinetic coefficient is a floor, at whatever temperature and pressure.
-  template <class T>
-  static T hold(const Params<T>& p, const At<T>& at) {
-    const Program<T, Point<T>> program(p, at.points);
-    Registers<T> r;
+  template <class T, class S>
+  static S hold(const Params<T>& p, const At<S>& at) {
+    const Program<T, Point<S>> program(p, at.points);
+    Registers<S> r;
     program.run(at, around(at), 0, program.for_all(), r.at);
-    return larger(r.at[program.at_rest()], larger(r.at[program.coefficient()], T(0)));
+    return larger(r.at[program.at_rest()], larger(r.at[program.coefficient()], S(0)));
   }
   static bool is_sound(const Params<double>& p, const double* points, std::int64_t room) {
     return is_program(p, points, room, 0);

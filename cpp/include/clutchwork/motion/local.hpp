@@ -294,7 +294,12 @@ class LocalDerivatives {
     place(at, b, &still);
     const S hold = visit_law(b.law, [&](auto tag) {
       using L = typename decltype(tag)::type;
-      return L::hold(Lifted<L, S, T>(b.law_params).get(), At<S>{S(0), nullptr, at.law_input, 0, sys_.points});
+      const At<S> here{S(0), nullptr, at.law_input, 0, sys_.points};
+      // numbers of a formula stand behind its parameters, and stay there
+      if constexpr (ProgrammedLaw<L>)
+        return L::hold(*reinterpret_cast<const typename L::template Params<T>*>(b.law_params), here);
+      else
+        return L::hold(Lifted<L, S, T>(b.law_params).get(), here);
     });
     const S limit = visit_contact(b.kind, [&](auto tag) {
       using E = typename decltype(tag)::type;

@@ -25,8 +25,7 @@ NUMBER = (Fraction(0),) * len(NAMES)
 # results that take numbers without a unit, and give one
 PURE = {"exp", "exp_behind", "fade", "fade_behind", "log", "tanh", "atan", "sin", "cos"}
 SAME = {"add": "adds", "subtract": "subtracts", "smaller": "compares", "larger": "compares", "pick": "takes"}
-SAME |= {"less": "compares", "at_most": "compares"}
-TRUTHS = {"less", "at_most"}
+SAME |= {"less": "compares"}
 
 
 def mistakes_of_units(program: Program, given: Mapping[str, str]) -> list[Mistake]:
@@ -92,7 +91,7 @@ def _unit(operation: str, of: Sequence[Powers], exponent: float | None) -> tuple
         made = second if first is None else first
         differs = first is not None and second is not None and first != second
         wrong = f"{SAME[operation]} {shown(first)} and {shown(second)}" if differs else ""
-        return NUMBER if operation in TRUTHS else made, wrong
+        return NUMBER if operation == "less" else made, wrong
     if operation in ("multiply", "divide"):
         sign = 1 if operation == "multiply" else -1
         # a constant may have a unit

@@ -36,12 +36,12 @@ ARITHMETIC: dict[type, tuple[str, str]] = {
     ast.Div: ("divide", "/"),
     ast.Pow: ("power", "**"),
 }
-# operation, and whether its sides are exchanged
-COMPARISONS: dict[type, tuple[str, bool]] = {
-    ast.Lt: ("less", False),
-    ast.LtE: ("at_most", False),
-    ast.Gt: ("less", True),
-    ast.GtE: ("at_most", True),
+# all ask which is less: whether the sides are exchanged, and the answer turned round
+COMPARISONS: dict[type, tuple[bool, bool]] = {
+    ast.Lt: (False, False),
+    ast.LtE: (True, True),
+    ast.Gt: (True, False),
+    ast.GtE: (False, True),
 }
 PLAIN = {"exp": "exp", "log": "log", "sqrt": "root", "tanh": "tanh", "atan": "atan", "sin": "sin", "cos": "cos"}
 PAIRS = {"min": "smaller", "max": "larger"}
@@ -278,8 +278,7 @@ class Reader:
     def _read_unaryop(self, tree: ast.UnaryOp) -> int:
         source = self.source(tree)
         if isinstance(tree.op, ast.Not):
-            zero, one = self.graph.constant(0.0, source), self.graph.constant(1.0, source)
-            return self._asked("pick", [self._truth(tree.operand), zero, one], source)
+            return self._not(self._truth(tree.operand), source)
         if isinstance(tree.op, ast.Invert):
             return self._mistake(f"has {source}, which has no meaning in a formula", "write not, or -")
         operand = self._number(tree.operand)
@@ -308,8 +307,9 @@ class Reader:
             right = self._number(side)
             if type(sign) not in COMPARISONS:
                 return self._mistake(f"has {source}, whose operator has no meaning in a formula", "use < <= > >=")
-            name, swapped = COMPARISONS[type(sign)]
-            found.append(self._asked(name, [right, left] if swapped else [left, right], source))
+            swapped, turned = COMPARISONS[type(sign)]
+            less = self._asked("less", [right, left] if swapped else [left, right], source)
+            found.append(self._not(less, source) if turned else less)
             left = right
         return self._all(found, "smaller", source)
 
@@ -322,6 +322,10 @@ class Reader:
         for other in found[1:]:
             made = self._asked(name, [made, other], source)
         return made
+
+    def _not(self, truth: int, source: Source) -> int:
+        zero, one = self.graph.constant(0.0, source), self.graph.constant(1.0, source)
+        return self._asked("pick", [truth, zero, one], source)
 
     def _asked(self, name: str, of: Sequence[int], source: Source) -> int:
         """A truth: 1 or 0."""

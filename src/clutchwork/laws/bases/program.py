@@ -20,7 +20,7 @@ Points = tuple[tuple[float, float, float], ...]
 OPERATIONS = (
     "add", "subtract", "add_product", "subtract_product", "multiply", "divide", "negate", "size", "smaller", "larger",
     "power", "root", "exp", "exp_behind", "fade", "fade_behind", "log", "tanh", "atan", "sin", "cos", "sign", "less",
-    "at_most", "pick",
+    "pick",
 )  # fmt: skip
 # numbers that a formula may have at once: what it reads, its constants and its results
 MOST_REGISTERS = 64
@@ -116,7 +116,6 @@ CALLS: dict[str, Callable[..., float]] = {
     "cos": math.cos,
     "sign": lambda a: float((a > 0.0) - (a < 0.0)),
     "less": lambda a, b: float(a < b),
-    "at_most": lambda a, b: float(a <= b),
     "pick": lambda asked, a, b: a if asked else b,
 }
 
