@@ -70,10 +70,24 @@ def generated() -> Path:
     return folder.parent
 
 
+def masks() -> list[str]:
+    """Flags that leave out the kinds which the page has no room for."""
+    sys.path.insert(0, str(ROOT / "src"))
+    from clutchwork.declare.schema import Role, kinds
+    from clutchwork.page.core import LEFT_OUT as UNUSED
+
+    found = []
+    for role, names in UNUSED.items():
+        known = kinds(Role(role))
+        mask = sum(1 << place for place, kind in enumerate(known) if kind not in names)
+        found.append(f"-DCLUTCHWORK_{role.upper()}={mask}ull")
+    return found
+
+
 def compiled() -> list[Path]:
     """Objects of all sources, made side by side."""
     places = [ROOT / "cpp" / "include", ROOT / "cpp" / "src", generated()]
-    includes = [f"-I{place}" for place in places]
+    includes = [f"-I{place}" for place in places] + masks()
     folder = MADE / "objects"
     folder.mkdir(parents=True, exist_ok=True)
 

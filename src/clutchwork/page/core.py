@@ -2,9 +2,18 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
+
 from clutchwork.declare.core import core
 
 MAGIC = b"\0asm\1\0\0\0"
+# kinds that the core of a page has no room for, by role: hydraulics
+LEFT_OUT = {
+    "torque": ("pump_torque",),
+    "process": (
+        *("accumulator", "hydraulic_oil", "oil_volume", "orifice", "pump_flow", "relief_valve", "spool_valve"),
+    ),
+}
 # a section that tools/build_wasm.py adds
 SECTION, CUSTOM = b"clutchwork", 0
 
@@ -21,6 +30,11 @@ def schema_of(module: bytes) -> int | None:
         if kind == CUSTOM and content[:length] == bytes([len(SECTION)]) + SECTION:
             return int(content[length:])
     return None
+
+
+def left_out(kinds: Iterable[tuple[str, str]]) -> list[str]:
+    """Kinds, given by role and name, that the core of a page does not have."""
+    return sorted({kind for role, kind in kinds if kind in LEFT_OUT.get(role, ())})
 
 
 def fits(module: bytes) -> bool:

@@ -12,7 +12,7 @@ from clutchwork.base.classes import dataclass
 from clutchwork.declare.core import core
 from clutchwork.declare.layout import CAUSES, MODES, STATUS
 from clutchwork.page.copied import paths
-from clutchwork.page.knots import Dragged, chosen, refuse_controllers, roomy, with_tables
+from clutchwork.page.knots import Dragged, chosen, refuse_controllers, refuse_kinds, roomy, with_tables
 from clutchwork.page.levers import levers
 from clutchwork.page.live import live
 from clutchwork.page.live import plain as plain_live
@@ -44,6 +44,7 @@ class PageRequest:
 def data_of(system: System, t_end: float, options: Options, wanted: PageRequest) -> dict[str, Any]:
     """The data of a page."""
     refuse_controllers(system)
+    refuse_kinds(system)
     knots = chosen(system, wanted.drag, t_end)
     if wanted.drag is None:
         # a constant pressure can be either

@@ -15,9 +15,11 @@ from clutchwork.assembly.provenance import parameter
 from clutchwork.assembly.records import frozen
 from clutchwork.base.classes import dataclass
 from clutchwork.base.errors import UseError, near
+from clutchwork.base.quote import listed
 from clutchwork.declare.node import Signal
 from clutchwork.declare.schema import Role
 from clutchwork.model.changes import SIGNALS, all_names, field_of, named, target, unit_of
+from clutchwork.page.core import left_out
 from clutchwork.results.selection import meant
 from clutchwork.run.control import controllers
 from clutchwork.signals.table import Table
@@ -167,6 +169,14 @@ def roomy(system: System, dragged: Sequence[Dragged]) -> tuple[System, dict[int,
     if times:
         arrays |= {"segment_time": np.concatenate(times), "segment_coef": np.concatenate(coefficients)}
     return replace(system, arrays=frozen(arrays)), room
+
+
+def refuse_kinds(system: System) -> None:
+    """The core of a page has no room for all kinds."""
+    made = ((type(one).role.value, type(one).kind) for one in (*system.elements, *system.processes))
+    kinds = left_out(made)
+    if kinds:
+        raise UseError("page", [f"the core of a page does without {listed(kinds)}: run it here, and plot the result"])
 
 
 def refuse_controllers(system: System) -> None:
