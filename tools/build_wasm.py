@@ -42,8 +42,8 @@ FLAGS = [
     "-DCLUTCHWORK_ONE_SIZE",
 ]
 SECTION = "clutchwork"
-# friction laws that no page has room for
-LAWS_LEFT_OUT = runpy.run_path(str(ROOT / "src/clutchwork/page/left_out.py"))["LAWS"]
+# kinds that no page has room for, by role
+LEFT_OUT = runpy.run_path(str(ROOT / "src/clutchwork/page/left_out.py"))["LEFT_OUT"]
 
 
 # small rather than fast, and as a whole: every part of the core is there once
@@ -73,25 +73,30 @@ def generated() -> Path:
     return folder.parent
 
 
-def mask_of_laws() -> int:
-    """A bit for each friction law that is compiled, in the order of their numbers."""
-    text = (MADE / "include" / "clutchwork" / "registry.gen.hpp").read_text(encoding="utf-8")
-    known = re.findall(r"#include <clutchwork/laws/(\w+)\.hpp>", text)
-    return sum(1 << number for number, kind in enumerate(known) if kind not in LAWS_LEFT_OUT)
+def masks() -> list[str]:
+    """A flag for each role of which kinds are left out: a bit for each kind that is compiled, in their order."""
+    sys.path.insert(0, str(ROOT / "src"))
+    from clutchwork.declare.schema import Role, kinds
+
+    found = []
+    for role, names in LEFT_OUT.items():
+        mask = sum(1 << place for place, kind in enumerate(kinds(Role(role))) if kind not in names)
+        found.append(f"-DCLUTCHWORK_{role.upper()}={mask:#x}ull")
+    return found
 
 
 def compiled() -> list[Path]:
     """Objects of all sources, made side by side."""
     places = [ROOT / "cpp" / "include", ROOT / "cpp" / "src", generated()]
     includes = [f"-I{place}" for place in places]
-    laws = f"-DCLUTCHWORK_LAW={mask_of_laws():#x}ull"
+    left_out = masks()
     folder = MADE / "objects"
     folder.mkdir(parents=True, exist_ok=True)
 
     def one(source: Path) -> Path:
         made = folder / f"{source.stem}.o"
         inlined = () if source.stem in HOT else ("-DCLUTCHWORK_HOT=inline",)
-        zig(*TARGET, *FLAGS, laws, *inlined, *includes, "-c", source, "-o", made)
+        zig(*TARGET, *FLAGS, *left_out, *inlined, *includes, "-c", source, "-o", made)
         return made
 
     # the longest first

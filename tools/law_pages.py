@@ -16,7 +16,7 @@ import clutchwork as cw
 from clutchwork.declare.schema import REGISTRY, Role, specs
 from clutchwork.laws.bases.stribeck import StribeckCurve
 from clutchwork.page.data import PageRequest
-from clutchwork.page.left_out import LAWS
+from clutchwork.page.left_out import LEFT_OUT
 from clutchwork.page.page import page
 from clutchwork.rig.presets import CLUTCH
 
@@ -93,7 +93,7 @@ WORDS = {
 
 def kinds() -> list[str]:
     """All friction laws that pages have room for."""
-    return sorted(set(REGISTRY[Role.LAW]) - set(LAWS))
+    return sorted(set(REGISTRY[Role.LAW]) - set(LEFT_OUT["law"]))
 
 
 def words(kind: str) -> str:

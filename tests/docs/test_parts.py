@@ -20,7 +20,7 @@ KNOWN = parts_page.declared()
 INSIDE = {
     *("AirDrag", "Grade", "RollingResistance", "PlateContact", "JenkinsElement", "WetDrag", "Flyweights", "OilFlow"),
     *("BeltContact", "PolygonSprocket", "EngineTorque", "MotorTorque", "Displacement", "PressureValve"),
-    *("RatioActuator", "VariableGear", "CamProfile"),
+    *("RatioActuator", "VariableGear", "CamProfile", "PumpFlow", "PumpTorque"),
     *("DiaphragmSpring", "TorqueLimiter", "CentrifugalClutch", "FundamentalClutch", "Wear"),
 }
 

@@ -26,7 +26,7 @@ def test_it_shifts_and_learns(script: Any, tmp_path: Path, capsys: pytest.Captur
     told = capsys.readouterr().out
     assert (tmp_path / "out" / "valve_body" / "shift.png").stat().st_size > 10_000
     direct, through = told.splitlines()[1:3]
-    assert direct.split()[1] == "2" and direct.split()[2] == "0"
+    assert direct.split()[1:3] == ["2", "0"]
     # two words name the second one
     assert through.split()[2:4] == ["2", "0"]
     jerks = [float(line.split("peak jerk")[1].split()[0]) for line in told.splitlines() if "kiss point" in line]

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from math import log10, pi, sqrt
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -308,3 +309,9 @@ def test_what_a_port_may_be() -> None:
     d.add(cw.Orifice("bore", inlet=(line, "energy"), area=1e-6))
     with pytest.raises(cw.ModelError, match=r"must be in \[Pa\]"):
         d.assemble()
+
+
+def test_a_page_refuses_it_by_name(tmp_path: Path) -> None:
+    run = circuit().simulate(0.1)
+    with pytest.raises(cw.UseError, match="is a HydraulicOil, which pages have no room for"):
+        run.page(tmp_path / "circuit.html")

@@ -27,7 +27,10 @@ class SpoolValve(Opening):
     Source: H. E. Merritt, Hydraulic Control Systems, Wiley 1967, sections 5-1 and 5-6.
     """
 
-    supply: SignalLike = signal("Pa", "pressure that fills the clutch: a volume", draws=True, example=1e6)
+    # a port for oil here; of a torque element that draws from a supply the class has a word of this name
+    supply: SignalLike = signal(  # type: ignore[misc, assignment]
+        "Pa", "pressure that fills the clutch: a volume", draws=True, example=1e6
+    )
     clutch: SignalLike = signal("Pa", "pressure of the clutch: a volume", draws=True, example=2e5)
     exhaust: SignalLike = signal("Pa", "pressure that the clutch empties to", default=0.0, draws=True)
     command: SignalLike = signal("Pa", "wanted pilot pressure", example=5e5)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
+from typing import Any
 
 from clutchwork.declare import (
     Component,
@@ -31,8 +32,8 @@ class ValveBody(Component):
     Use it for the pressures of a `Transmission`: a body named "body" has for the element A the valve `body.A_valve`,
     the oil behind it, `body.A_port`, and `body.A_piston`, whose force is the `normal_force` of the element:
     `shift={"A": {"normal_force": body.part("A_piston"), "gain": ...}}`. Its pump takes its torque from `shaft`; the
-    line is `body.line`, which `body.regulator` keeps at `line_pressure` as long as the pump delivers what pistons and leaks
-    take. Shift controllers command `body.A_valve.command`, and find valve and piston by themselves.
+    line is `body.line`, which `body.regulator` keeps at `line_pressure` as long as the pump delivers what pistons and
+    leaks take. Shift controllers command `body.A_valve.command`, and find valve and piston by themselves.
 
     What elements have in common is given once; a `Pump`, `SpoolValve` and `ClutchActuator` of one's own make any other.
     """
@@ -76,23 +77,23 @@ class ValveBody(Component):
         if not areas:
             return [("piston_areas", "names no element", "give the area of each piston")]
         unknown = [name for name in self.pressures or {} if name not in areas]
-        return [(f"pressures.{name}", "is no element with a piston", "give its area too") for name in unknown]
+        return [(f"pressures.{name}", "has no piston", "give its area too") for name in unknown]
 
     def parts(self) -> Iterable[Component]:
         """Line, pump and regulator, and of each element valve, oil and piston."""
-        oil = {"density": self.density, "viscosity": self.viscosity}
+        oil: dict[str, Any] = {"density": self.density, "viscosity": self.viscosity}
         start = float(self.line_pressure) if isinstance(self.line_pressure, int | float) else 0.0
         line = OilVolume(f"{self.name}.line", volume=self.line_volume, initial_pressure=start)
         yield line
-        pump = {"displacement": self.displacement, "efficiency": self.efficiency, "drag": self.drag}
+        pump: dict[str, Any] = {"displacement": self.displacement, "efficiency": self.efficiency, "drag": self.drag}
         leakage = self.pump_leakage
         yield Pump(f"{self.name}.pump", shaft=self.shaft, outlet=line, leakage=leakage, **pump, **oil)
-        limit = {"command": self.line_pressure, "area": self.regulator_area}
+        limit: dict[str, Any] = {"command": self.line_pressure, "area": self.regulator_area}
         yield ReliefValve(f"{self.name}.regulator", inlet=line, **limit, **oil)
         for name, area in (self.piston_areas or {}).items():
             yield from self._circuit(name, area, line, oil)
 
-    def _circuit(self, name: str, area: float, line: OilVolume, oil: Mapping[str, SignalLike]) -> Iterable[Component]:
+    def _circuit(self, name: str, area: float, line: OilVolume, oil: Mapping[str, Any]) -> Iterable[Component]:
         """Valve, oil and piston of an element."""
         held = float((self.pressures or {}).get(name, 0.0))
         oil_there = OilVolume(f"{self.name}.{name}_port", volume=self.port_volume, initial_pressure=held)

@@ -93,6 +93,7 @@ class ParallelSequence:
     _fill_time: float = 0.0  # s
     _time: float = 0.0  # s, of the inertia phase as planned
     _passed: float = 0.0  # s, of that plan
+    _pulls: bool = False  # whether those that close bring the input to its new speed alone
     _costs: dict[str, float] = field(default_factory=dict)  # rad/s
     _integral: Array = field(default_factory=lambda: np.zeros(0))
     _output: Trend = field(default_factory=Trend)
@@ -279,7 +280,10 @@ class ParallelSequence:
 
     def _lets_go(self, name: str, torque: float) -> bool:
         """Whether an element that opens is no more wanted: one whose kiss point is taken too high would drag."""
-        idle = name in self.one.off and torque == 0.0
+        # those that close can pull the input to its new speed, and what opens has not held it back
+        if name in self.one.off and torque > 0.0:
+            self._pulls = False
+        idle = self._pulls and name in self.one.off and torque == 0.0
         return idle and name in self.do.drivers and self._passed > LET_GO * self._time
 
     def _watch_torques(self, x: float, torques: Mapping[str, float], planned: Mapping[str, float]) -> None:
@@ -327,6 +331,7 @@ class ParallelSequence:
         self._start, self.loaded = self._y(now), now.input_torque
         self._speed = np.array([self.rates.get(name, 0.0) for name in one.on])
         self._integral, self._passed = np.zeros(len(one.on)), 0.0
+        self._pulls = float(one.input @ self._start) * now.input_torque > 0.0
         self._output = Trend(now.output_speed)
         change = -float(one.input @ self._start)
         time, longer = max(with_.inertia_time, 1e-9), abs(change) / max(with_.usual_step, 1e-9)

@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-from clutchwork.schematic.look import INK, SIGNAL_BODY, MarkStyle
+from clutchwork.schematic.look import BLANK, INK, SIGNAL_BODY, MarkStyle
 from clutchwork.schematic.pen import SymbolPen
 from clutchwork.schematic.symbols.symbol import Drawn, Symbol
-from clutchwork.schematic.symbols.torques import BLANK, to_shaft
+from clutchwork.schematic.symbols.torques import to_shaft
 
 SLOT = BLANK._replace(colour=SIGNAL_BODY.colour, width=SIGNAL_BODY.width)
 FULL = SIGNAL_BODY._replace(fill="#E6DDF0", width=0.7)
