@@ -176,8 +176,8 @@ def test_speeds_go_straight_from_gear_to_gear(before: str, after: str, speed: fl
 def test_a_downshift_over_many_gears_does_not_brake_the_car(throttle: float) -> None:
     """From 7 to 2 with little at hand the engine brings most of what the input needs, and it takes longer.
 
-    What elements pull is `pull` at the input, in second gear at the half shafts, and as much again: the throttle is in
-    proportion to what is lacking.
+    What elements pull is `pull` at the input, in second gear at the half shafts, and more than that again, for the
+    throttle is in proportion to what is lacking.
     """
     box = BOXES["zf-8hp70"]
     made = {}
@@ -189,5 +189,5 @@ def test_a_downshift_over_many_gears_does_not_brake_the_car(throttle: float) -> 
         ).results[0]  # fmt: skip
     least = {pull: float(np.min(one.run["half_shafts.torque"])) for pull, one in made.items()}
     assert all(one.record.reached for one in made.values())
-    assert least[40.0] > -2.2 * 40.0 * box.ratios["2"] * FINAL_DRIVE
-    assert least[1e3] < 2.5 * least[40.0]
+    assert least[40.0] > -2.6 * 40.0 * box.ratios["2"] * FINAL_DRIVE
+    assert least[1e3] < 2.0 * least[40.0]

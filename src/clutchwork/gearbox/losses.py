@@ -156,7 +156,7 @@ KINDS: Mapping[type, str] = {
 }  # fmt: skip
 
 
-class Axis(NamedTuple):
+class LossAxis(NamedTuple):
     """What a table is over: the quantity, its unit, and the values of its rows."""
 
     name: str
@@ -179,12 +179,12 @@ class LossMap:
     shares: Mapping[str, Table]
 
     @property
-    def axes(self) -> tuple[Axis, Axis, Axis]:
+    def axes(self) -> tuple[LossAxis, LossAxis, LossAxis]:
         """Of its tables, the outer one first."""
         return (
-            Axis("temperature", "K", self.temperatures),
-            Axis("speed", "rad/s", self.speeds),
-            Axis("torque", "N m", self.torques),
+            LossAxis("temperature", "K", self.temperatures),
+            LossAxis("speed", "rad/s", self.speeds),
+            LossAxis("torque", "N m", self.torques),
         )
 
     @property

@@ -362,7 +362,9 @@ class ParallelSequence:
         else:
             # what the plan lacks at its end is made up with its mean rate
             law = rate if x < 1.0 else -self._start / self._time
-        self._ask(float(self._start @ (one.inertia @ law)), now)
+        # under power the torque at hand makes up what the slips are off their course
+        asked = rate if self.loaded > 0.0 else law
+        self._ask(float(self._start @ (one.inertia @ asked)), now)
         force = one.inertia @ law + one.coupling * self._output.slope - one.input * now.input_torque
         torques, missed = self._taken(force, now)
         if with_.closed_loop and missed <= 1e-6:

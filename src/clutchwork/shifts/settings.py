@@ -43,7 +43,7 @@ class ShiftSettings:
     torque_time: float = 0.15
     inertia_time: float = 0.35
     usual_step: float = 150.0
-    stretch: float = 3.0
+    stretch: float = 2.5
     end_time: float = 0.1
     margin: float = 1.3
     reduction: float = 0.3

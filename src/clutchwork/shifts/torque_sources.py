@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from math import exp, inf
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Protocol
 
 from clutchwork.base.classes import dataclass
 from clutchwork.base.errors import UseError
@@ -13,7 +13,6 @@ from clutchwork.shifts.lines import Line, at
 
 if TYPE_CHECKING:
     from clutchwork.elements.engine import Engine
-    from clutchwork.shifts.drive import Controller
     from clutchwork.shifts.record import Measured
 
 
@@ -114,6 +113,21 @@ class EngineSource:
 Source = TorqueSource | EngineSource
 
 
+class TorqueRequest(Protocol):
+    """What a controller asks for."""
+
+    @property
+    def torque_factor(self) -> float:
+        """Factor of the torque of an engine beside the sources."""
+
+    @property
+    def blip(self) -> float:
+        """Throttle on top of that of the driver, of such an engine."""
+
+    def torque_change(self, now: Measured, /) -> float:
+        """Torque at the input on top of what the driver asks for [N m]."""
+
+
 class TorqueShare:
     """Shares the torque that a controller asks for among sources, and leads those that lag."""
 
@@ -131,7 +145,7 @@ class TorqueShare:
         return demand, sum(low for low, _ in ends), sum(high for _, high in ends)
 
     def signals(
-        self, control: Controller, now: Measured, pedal: float, passed: float, period: float
+        self, control: TorqueRequest, now: Measured, pedal: float, passed: float, period: float
     ) -> tuple[dict[str, float], float]:
         """Values by signal, and the throttle that is left for an engine beside the sources, 0 to 1.
 
