@@ -1,8 +1,8 @@
 """Compile the library of FMUs for other platforms, from the sources of the native one, into src/clutchwork/fmu/static.
 
 Usage: PYTHON tools/build_fmu_libraries.py [PLATFORM ...], such as aarch64-linux; all of them without a name. The
-compiler is that of the WebAssembly (the extra `wasm`). They go into the wheel, and into each FMU that is made where they
-are. docs/guide/fmu.md
+compiler is that of the WebAssembly (the extra `wasm`). They go into the wheel, and into each FMU that is made beside
+them. docs/guide/fmu.md
 """
 
 from __future__ import annotations
