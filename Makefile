@@ -4,6 +4,7 @@
 #   make check    format, lint, types, import contracts, spelling
 #   make bench    speed against peers; ARGS="--write" puts the table into docs/benchmarks.md
 #   make wasm     the core as WebAssembly: src/clutchwork/page/static/core.wasm
+#   make fmu-libraries  the library of FMUs for other platforms: src/clutchwork/fmu/static/
 #   make wheel    sdist, and a wheel for machines like this one, tried without a compiler: dist/
 #   make release-check    the same, and what has to be true before a tag: CONTRIBUTING.md
 #   make page     the script of pages that compute (needs node): src/clutchwork/page/static/
@@ -41,11 +42,11 @@ CPP_FILES = $(shell git ls-files 'cpp/*.hpp' 'cpp/*.cpp' 'cpp/*.h' 'interfaces/*
 
 # each recipe takes JOBS cores itself, and all install into one environment
 .NOTPARALLEL:
-.PHONY: help setup demo test test-rest test-all test-cpp test-python page test-page check-page check format bench wasm wheel release-check docs picture pictures clean
+.PHONY: help fmu-libraries setup demo test test-rest test-all test-cpp test-python page test-page check-page check format bench wasm wheel release-check docs picture pictures clean
 .DELETE_ON_ERROR:
 
 help:
-	@sed -n '2,13p' Makefile | cut -c 3-
+	@sed -n '2,14p' Makefile | cut -c 3-
 
 # ---------------------------------------------------------------- environment
 
@@ -165,6 +166,11 @@ wasm: $(WASM)
 $(WASM): $(STAMPS)/wasm $(CORE_SOURCES) tools/build_wasm.py
 	@echo "compiling the core to WebAssembly (a minute or so)"
 	@JOBS=$(JOBS) $(BIN)/python tools/build_wasm.py
+
+# each FMU that is made where they are runs on all of these platforms
+fmu-libraries: $(STAMPS)/wasm
+	@echo "compiling the library of FMUs for other platforms (some minutes each)"
+	@$(BIN)/python tools/build_fmu_libraries.py $(PLATFORMS)
 
 # sdist, the wheel that it makes, repaired to a manylinux tag on Linux, and what a user does with it
 # what it holds of pages needs npm here

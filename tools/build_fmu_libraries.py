@@ -1,11 +1,14 @@
-"""Compile the library of FMUs for other platforms than this one, from the sources of the native one, beside it.
+"""Compile the library of FMUs for other platforms, from the sources of the native one, into src/clutchwork/fmu/static.
 
 Usage: PYTHON tools/build_fmu_libraries.py [PLATFORM ...], such as aarch64-linux; all of them without a name. The
-compiler is that of the WebAssembly (the extra `wasm`). docs/guide/fmu.md
+compiler is that of the WebAssembly (the extra `wasm`). They go into the wheel, and into each FMU that is made beside
+them. docs/guide/fmu.md
 """
 
 from __future__ import annotations
 
+import gzip
+import re
 import sys
 import time
 from collections.abc import Iterator
@@ -15,6 +18,7 @@ from build_wasm import FLAGS, HOT, generated, zig
 
 ROOT = Path(__file__).resolve().parent.parent
 MADE = ROOT / "build" / "fmu"
+WHERE = ROOT / "src" / "clutchwork" / "fmu" / "static"
 NAMES = ("c_api", "components", "local", "lanes", "phases_small", "phases_sparse", "phases_full", "fixed_steps")
 # those of the WebAssembly, and what a shared library needs; own allocation stays inside; one run at a time
 MORE = ("-O2", "-ffunction-sections", "-fvisibility-global-new-delete-hidden", "-DCLUTCHWORK_ALONE")
@@ -28,8 +32,8 @@ TARGETS = {
 }
 
 
-def library(platform: str, where: Path) -> Path:
-    """Compile and link one library into a folder."""
+def library(platform: str) -> Path:
+    """Compile, link and pack one library."""
     target, ending = TARGETS[platform]
     folder = MADE / platform
     folder.mkdir(parents=True, exist_ok=True)
@@ -42,30 +46,34 @@ def library(platform: str, where: Path) -> Path:
         inlined = () if source.stem in HOT else ("-DCLUTCHWORK_HOT=inline",)
         zig("-target", target, *flags, *inlined, "-c", source, "-o", made)
         objects.append(made)
-    path = where / f"{platform}{ending}"
+    path = folder / f"{platform}{ending}"
     exports = ROOT / "interfaces" / "fmi" / "exports.map"
     plain = ["-s", "-Wl,--gc-sections", f"-Wl,--version-script={exports}"]
     sections = plain if ending == ".so" else ["-s"] if ending == ".dll" else []
     zig("-target", target, "-shared", *sections, *objects, "-o", path)
-    # the linker of Windows leaves lists for programs that link with it
-    for spare in (*where.glob("*.lib"), *where.glob("*.pdb")):
-        spare.unlink()
-    return path
+    packed = WHERE / f"{platform}.{schema()}{ending}.gz"
+    WHERE.mkdir(exist_ok=True)
+    for old in WHERE.glob(f"{platform}.*"):
+        old.unlink()
+    packed.write_bytes(gzip.compress(path.read_bytes(), mtime=0))
+    return packed
+
+
+def schema() -> str:
+    """What the library reads, as src/clutchwork/fmu/libraries.py has it in the names of files."""
+    header = (generated() / "clutchwork" / "layout.gen.hpp").read_text(encoding="utf-8")
+    found = re.search(r"schema_hash = (-?\d+)ll", header)
+    return f"{int(found[1]) & (2**64 - 1):016x}" if found else ""
 
 
 def built(platforms: list[str]) -> Iterator[str]:
     """Make the libraries; yields what to report."""
-    sys.path.insert(0, str(ROOT / "src"))
-    from clutchwork.fmu.libraries import folder
-
     unknown = [name for name in platforms if name not in TARGETS]
     if unknown:
         raise SystemExit(f"{unknown[0]} is not a platform: {', '.join(TARGETS)}")
-    where = folder()
-    here = {path.stem for path in where.glob("*-*.*")}
-    for platform in platforms or [name for name in TARGETS if name not in here]:
+    for platform in platforms or TARGETS:
         began = time.monotonic()
-        path = library(platform, where)
+        path = library(platform)
         yield f"{path.name}: {path.stat().st_size / 1e6:.1f} MB, {time.monotonic() - began:.0f} s"
 
 

@@ -51,6 +51,17 @@ def test_the_core_is_not_given_to_a_compiler_that_it_refuses() -> None:
     assert WHEELS["windows"]["environment"][told[1]] == told[2]
 
 
+def test_libraries_of_fmus_for_all_platforms_are_in_every_wheel(jobs: dict[str, Any]) -> None:
+    """Built once, by the command of the guide, before wheels and sdist."""
+    assert {"run": "make fmu-libraries"} in jobs["fmu-libraries"]["steps"]
+    where = next(step["with"]["path"] for step in jobs["fmu-libraries"]["steps"] if "upload" in step.get("uses", ""))
+    for job in ("wheels", "sdist"):
+        assert "fmu-libraries" in jobs[job]["needs"]
+        assert {"name": "fmu-libraries", "path": where} in [step.get("with") for step in jobs[job]["steps"]]
+    assert f"{where}/*" in PROJECT["tool"]["scikit-build"]["sdist"]["include"]
+    assert f"/{where}/" in (ROOT / ".gitignore").read_text(encoding="utf-8")
+
+
 def test_every_wheel_and_the_sdist_are_tried(jobs: dict[str, Any]) -> None:
     command = WHEELS["test-command"].split()
     assert command == ["python", "{project}/tools/try_installed.py"]

@@ -2,20 +2,25 @@
 
 from __future__ import annotations
 
+import gzip
 import random
 import shutil
 import subprocess
+import sys
 import zipfile
+from collections.abc import Iterable
 from pathlib import Path
 from typing import Any
 
 import pytest
 
 import clutchwork as cw
+from clutchwork.declare.core import core
 from clutchwork.fmu.archive import merge, read, write
-from clutchwork.fmu.libraries import libraries
+from clutchwork.fmu.libraries import OTHERS, Library, libraries, schema_of
 from fmu.conftest import INPUTS, SIX_SPEED
 from support.fmus import Fmu
+from support.project import ROOT
 
 ODD = ["plain", "with space", "per%20cent", "ümlaut", "plus+and&", "a/deep/er"]
 
@@ -100,6 +105,37 @@ def test_merge_joins_platforms_and_refuses_two_models(tmp_path: Path) -> None:
     write(tmp_path / "third.fmu", {**other, "resources/model.cw": b"another"})
     with pytest.raises(cw.UseError, match=r"model\.cw"):
         merge([one, tmp_path / "third.fmu"], tmp_path / "both.fmu")
+
+
+def test_libraries_of_other_platforms_go_with_it(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Those that were built for what this core writes; the one of this machine is its own."""
+    others = tmp_path / "static"
+    others.mkdir()
+    schema, here = schema_of(core().schema_hash()), folders_of(libraries())
+    names = {"x86_64-windows": "dll", "aarch64-darwin": "dylib", "aarch64-linux": "so", "x86_64-linux": "so"}
+    for platform, ending in names.items():
+        (others / f"{platform}.{schema}.{ending}.gz").write_bytes(gzip.compress(platform.encode()))
+    (others / "x86_64-darwin.0123456789abcdef.dylib.gz").write_bytes(gzip.compress(b"of another version"))
+    monkeypatch.setattr("clutchwork.fmu.libraries.OTHERS", others)
+    entries = read(cw.Driveline.load(SIX_SPEED).to_fmu(tmp_path / "one.fmu", version="3.0", picture=False))
+    binaries = {Path(name).parent.name: content for name, content in entries.items() if name.startswith("binaries/")}
+    assert binaries.keys() == names.keys() | here
+    assert binaries["x86_64-windows"] == b"x86_64-windows"
+    (own,) = here
+    assert len(binaries[own]) > 1e6
+
+
+def folders_of(found: Iterable[Library]) -> set[str]:
+    """Platforms of libraries, without those that were built beside the package."""
+    return {one.folders["3.0"] for one in found if one.path.suffix != ".gz"}
+
+
+def test_the_tool_names_them_as_the_package_reads_them() -> None:
+    sys.path.append(str(ROOT / "tools"))
+    import build_fmu_libraries
+
+    assert build_fmu_libraries.schema() == schema_of(core().schema_hash())
+    assert OTHERS == build_fmu_libraries.WHERE
 
 
 def _told(*command: Any) -> str:

@@ -50,7 +50,7 @@ int main(void) {
 """
 
 
-def driveline() -> cw.Driveline:
+def driveline(*, cooled: bool = True) -> cw.Driveline:
     """A disc clutch that gets warm, behind an actuator, drag beside it, a spring and a gear behind it."""
     d = cw.Driveline('clutch "?" of a */ car')
     engine, plate = d.shaft("engine", inertia=0.2, speed=150.0), d.shaft("plate", inertia=0.02)
@@ -76,7 +76,8 @@ def driveline() -> cw.Driveline:
         thermal_mass=90.0,
     )
     d.add(clutch)
-    d.add(cw.Convection("cooling", hot=clutch.plates, cold=d.ambient("air"), conductance=5.0))
+    if cooled:
+        d.add(cw.Convection("cooling", hot=clutch.plates, cold=d.ambient("air"), conductance=5.0))
     d.add(cw.Gear("gear", input=plate, output=half, ratio=2.0))
     d.add(cw.SpringDamper("shaft", base=half, follower=wheel, stiffness=4e3, damping=5.0))
     drag = cw.Formula("mu + f*exp(-v/w) + 0.01*tanh(v/w)", mu=0.2, f=0.1, w="50 rpm")
@@ -269,6 +270,35 @@ def test_only_what_the_model_needs_is_compiled(folder: Path, built: Path) -> Non
     ]
     subprocess.run(command, cwd=built, check=True)
     assert subprocess.run([built / "more"], check=False).returncode == 0
+
+
+def test_another_model_takes_the_library(built: Path, tmp_path: Path) -> None:
+    """One whose kinds are all there: nothing of the core is compiled, and it computes its own numbers."""
+    other = driveline(cooled=False)
+    folder = cw.export_c(other, tmp_path / "other", t_end=0.3, dt=DT, rtol=1e-8, signals=["engine.speed"])
+    shutil.rmtree(folder / "core")
+    where = [f"CORE_DIR={built / 'core'}", f"LIBRARY={built / 'build' / 'libclutchwork.a'}"]
+    subprocess.run(["make", "-C", folder, "model", "alone", *FLAGS, *where], capture_output=True, check=True)
+    assert not list((folder / "build").glob("c_api.o"))
+    _, columns = table(folder / "model")
+    np.testing.assert_array_equal(columns[1], other.simulate(0.3, dt=DT, rtol=1e-8)["engine.speed"])
+
+
+def test_a_whole_core_leaves_nothing_out(tmp_path: Path) -> None:
+    folder = cw.export_c(driveline(), tmp_path, t_end=0.3, whole_core=True)
+    text = (folder / "core/include/clutchwork/parts.gen.hpp").read_text()
+    assert "#define CLUTCHWORK_ALONE" in text
+    assert "CLUTCHWORK_TORQUE" not in text
+
+
+def test_it_needs_no_heap_and_no_library_of_cpp(folder: Path, tmp_path: Path) -> None:
+    """Of a bare machine: compiled as freestanding, and ended by any allocation."""
+    bare = shutil.copytree(folder, tmp_path / "bare")
+    made = subprocess.run(
+        ["make", "-C", bare, "alone", *FLAGS, "FREESTANDING=1"], capture_output=True, text=True, check=False
+    )
+    assert made.returncode == 0, made.stdout + made.stderr
+    assert (bare / "build-freestanding" / "c_api.o").is_file()
 
 
 def test_the_event_is_told(built: Path) -> None:

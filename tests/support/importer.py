@@ -90,12 +90,14 @@ def simulated(
     solver: Any = Radau,
     inputs: Callable[[float], Mapping[str, float]] = lambda _: {},
     knots: Sequence[float] = (),
+    most_steps: int = 1_000_000,
 ) -> tuple[Array, list[float]]:
     """Rows of variables at times, and the instants of all events.
 
     Parameters: inputs, what they are at a time, continuous but for `knots`, where they are set in event mode, from the
-    right.
+    right; most_steps, how many steps it may take, counted like events, so that none goes on for ever.
     """
+    steps = 0
     rows = np.full((len(times), len(names)), np.nan)
     events, done, time, end = list[float](), 0, run.time, float(times[-1])
 
@@ -128,6 +130,8 @@ def simulated(
         hit = np.inf
         while walk.status == "running" and hit == np.inf:
             message = walk.step()
+            steps += 1
+            assert steps + len(events) < most_steps, (walk.t, len(events))
             assert walk.status != "failed", (walk.t, message)
             state = walk.dense_output()
             hit = _first(place, run, state, walk.t_old, walk.t)

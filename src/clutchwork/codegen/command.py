@@ -37,6 +37,9 @@ def add_command(subparsers: Any) -> None:
     export.add_argument(
         "--signals", metavar="A,B", action="append", help="signals to print, may be given several times; default: all"
     )
+    export.add_argument(
+        "--whole-core", action="store_true", help="all kinds of elements and laws, for other models too"
+    )
     shell.add_json(export)
     add_options(export, OF_EXPORT, {**DEFAULTS, "dt": "a thousandth of the end time"})
 
@@ -48,11 +51,12 @@ def export_command(asked: argparse.Namespace) -> int:
     from clutchwork.driveline.driveline import Driveline
 
     shell.writable([asked.out / "model.h"])
-    given = asked.signals
-    signals = None if given is None else [name for text in given for name in shell.parts(text)]
+    names = asked.signals
+    signals = None if names is None else [name for text in names for name in shell.parts(text)]
     with warnings.catch_warnings(record=True) as warned, words_of_files():
         warnings.simplefilter("always", ModelWarning)
-        folder = export_c(Driveline.load(asked.model), asked.out, signals=signals, **given_options(asked))
+        given = {"signals": signals, "whole_core": asked.whole_core, **given_options(asked)}
+        folder = export_c(Driveline.load(asked.model), asked.out, **given)
     for warning in warned:
         sys.stderr.write(f"warning: {warning.message}\n")
     if asked.json:

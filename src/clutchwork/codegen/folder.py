@@ -40,13 +40,16 @@ def export_c(
     t_end: float | None = None,
     signals: Sequence[str] | None = None,
     options: Options | None = None,
+    whole_core: bool = False,
     **changes: Any,
 ) -> Path:
     """Write C and C++ of a Driveline or a System into a folder; its path.
 
     Parameters: t_end [s]; signals, names of what main.c prints, all by default; options, an `Options`, or its fields by
-    name (rtol=, dt=, method= ...). What is left out is that of the settings of the model, as for `simulate`. `make` in
-    the folder builds it, with a C and a C++20 compiler and nothing else. What is in it: docs/guide/export.md.
+    name (rtol=, dt=, method= ...); whole_core, whether the core has all kinds of elements and laws, so that its library
+    serves other models too, else those of this model. What is left out is that of the settings of the model, as for
+    `simulate`. `make` in the folder builds it, with a C and a C++20 compiler and nothing else. What is in it:
+    docs/guide/export.md.
     """
     where = fitting("cw.export_c", folder, "c")
     if not (isinstance(model, Driveline) or hasattr(model, "settings")):
@@ -58,7 +61,7 @@ def export_c(
     known = channels(system, made.angles, made.work)
     exported = Exported(system, end, made.dt or (end - made.t_start) / INTERVALS, made, chosen(signals, known))
     _refuse_large(exported)
-    return _write(exported, made_folder(where))
+    return _write(exported, made_folder(where), whole_core)
 
 
 def _refuse_large(exported: Exported) -> None:
@@ -68,11 +71,11 @@ def _refuse_large(exported: Exported) -> None:
         raise ValueError(f"dt is {exported.dt:g} s: {words}; use a larger dt")
 
 
-def _write(exported: Exported, folder: Path) -> Path:
+def _write(exported: Exported, folder: Path, whole: bool) -> Path:
     about = {"README.md": readme(exported, new_run(exported.data).memory_size)}
     for name, lines in {**files(exported), **about}.items():
         _put(folder / name, ("\n".join(lines) + "\n").encode())
-    core = {**sources(), GENERATED / FILE: ("\n".join(parts(exported.system)) + "\n").encode()}
+    core = {**sources(), GENERATED / FILE: ("\n".join(parts(exported.system, whole)) + "\n").encode()}
     for path, content in core.items():
         _put(folder / "core" / path, content)
     # these belong to whoever edits them

@@ -7,8 +7,12 @@ from dataclasses import replace
 from itertools import count
 from typing import NamedTuple
 
+import numpy as np
+from numpy.typing import NDArray
+
 from clutchwork.assembly.system import System
 from clutchwork.assembly.wiring import wiring
+from clutchwork.fmu.sizes import nominal, size_of
 from clutchwork.fmu.variables import FmuVariable, VariableKind
 from clutchwork.results.channels import Channels
 from clutchwork.results.forms import Form, RowEntry, Total
@@ -18,8 +22,6 @@ from clutchwork.results.rows import numbers
 INTEGRALS = ("angle", "element_work", "contact_work", "prescribed_work", "supply_energy", "meter_energy")
 ABOUT_RATE = "time derivative of the state"
 ABOUT_MARGIN = "above zero while nothing needs a decision"
-# sizes of states and inputs by their units, where nothing else is known
-NOMINAL = {"Pa": 1e5, "K": 100.0}
 
 
 class ContinuousState(NamedTuple):
@@ -38,16 +40,22 @@ class ExchangeTerms(NamedTuple):
     states: tuple[ContinuousState, ...]
 
 
-def exchange(system: System, known: Channels, variables: Sequence[FmuVariable]) -> ExchangeTerms:
-    """Give an FMU its continuous states, their rates, and event indicators, behind the variables that it has."""
+def exchange(
+    system: System, known: Channels, variables: Sequence[FmuVariable], amounts: NDArray[np.float64] | None
+) -> ExchangeTerms:
+    """Give an FMU its continuous states, their rates, and event indicators, behind the variables that it has.
+
+    Parameters: amounts, the largest of all numbers of a row over a run, by which states have sizes; None: no run.
+    """
     made = list(variables)
     read = set[int]().union(*(one.form.reads() for one in made if one.form is not None))
     placed = [(number, place) for number, place, always in _numbers(system) if always or place in read]
     references = [_state(system, known, made, place) for _, place in placed]
     states = list[ContinuousState]()
-    for state, ((number, _), reference) in enumerate(zip(placed, references, strict=True)):
+    for state, ((number, place), reference) in enumerate(zip(placed, references, strict=True)):
         one = made[reference]
-        size = nominal(system, one.unit)
+        usual = nominal(system, one.unit)
+        size = usual if amounts is None else size_of(float(amounts[place]), usual, one.unit)
         made[reference] = replace(one, state=state, nominal=size)
         states.append(ContinuousState(number, size, reference, len(made)))
         unit = "1/s" if one.unit == "1" else f"{one.unit}/s"
@@ -124,10 +132,3 @@ def _margins(system: System) -> Iterator[str]:
     branches = [branch.name for branch in (*found.elements, *found.contacts)]
     for name in (*branches, *(part.name for part in (*system.processes, *system.flows))):
         yield f"{name}.margin"
-
-
-def nominal(system: System, unit: str) -> float:
-    """Size of a quantity: that of the speeds where a run begins, else the one of its unit."""
-    if unit in ("rad/s", "m/s"):
-        return max(1.0, *(abs(float(speed)) for speed in system.initial_speed))
-    return NOMINAL.get(unit, 1.0)

@@ -23,7 +23,7 @@ TRIED = 2
 STRAIGHT = 1e-9
 
 
-class Line(NamedTuple):
+class ParameterLine(NamedTuple):
     """How a number follows a parameter, or its reciprocal, as a twist follows a stiffness."""
 
     slope: float
@@ -34,13 +34,13 @@ class Line(NamedTuple):
         return self.slope * (1.0 / value - 1.0 / start if self.is_reciprocal else value - start)
 
 
-Lines = dict[Key, Line]
+ParameterLines = dict[Key, ParameterLine]
 
 
 class Following(NamedTuple):
     """How numbers of outputs follow parameters, and the output that does not follow one along a line."""
 
-    lines: dict[str, Lines]
+    lines: dict[str, ParameterLines]
     left_out: dict[str, str]
 
 
@@ -52,7 +52,7 @@ def following(system: System, options: Options, numbers: Iterable[FmuVariable], 
     known = channels(system, options.angles, options.work)
     dependent = [name for name in outputs if not known[name].evaluate.is_of_structure()]
     base = _numbers(system, options, dependent)
-    lines, left_out = dict[str, Lines](), dict[str, str]()
+    lines, left_out = dict[str, ParameterLines](), dict[str, str]()
     for one in numbers if dependent else ():
         if one.kind is not VariableKind.FIXED or not one.reaches_forms:
             continue
@@ -69,14 +69,16 @@ def following(system: System, options: Options, numbers: Iterable[FmuVariable], 
     return Following(lines, left_out)
 
 
-def _lines(system: System, options: Options, one: FmuVariable, base: Numbers, outputs: Sequence[str]) -> Lines | str:
+def _lines(
+    system: System, options: Options, one: FmuVariable, base: Numbers, outputs: Sequence[str]
+) -> ParameterLines | str:
     """How all numbers follow that a parameter moves; the name of an output where one follows along no line."""
     others = ((value, new) for value in one.far if (new := _changed(system, {one.path: value})) is not None)
     looks = [(value, _numbers(new, options, outputs)) for value, new in islice(others, TRIED)]
     for _, made in looks:
         if made.keys() != base.keys():
             return next(iter(made.keys() ^ base.keys()))[0]
-    lines = Lines()
+    lines = ParameterLines()
     for key, number in base.items():
         changes = [(value, made[key] - number) for value, made in looks]
         if not any(change for _, change in changes):
@@ -88,14 +90,14 @@ def _lines(system: System, options: Options, one: FmuVariable, base: Numbers, ou
     return lines
 
 
-def _line(start: float, changes: Sequence[tuple[float, float]]) -> Line | None:
+def _line(start: float, changes: Sequence[tuple[float, float]]) -> ParameterLine | None:
     """The line through changes of a number by values of a parameter, or by their reciprocals."""
     for is_reciprocal in (False, True):
         if len(changes) < TRIED or (is_reciprocal and not all([start, *(value for value, _ in changes)])):
             continue
         value, change = changes[0]
-        line = Line(1.0, is_reciprocal)
-        line = Line(change / line.change(start, value), is_reciprocal)
+        line = ParameterLine(1.0, is_reciprocal)
+        line = ParameterLine(change / line.change(start, value), is_reciprocal)
         size = max(abs(change) for _, change in changes)
         if all(abs(line.change(start, value) - change) <= STRAIGHT * size for value, change in changes):
             return line
@@ -107,9 +109,9 @@ def _does_not_add_up(
     options: Options,
     moves: Mapping[str, FmuVariable],
     base: Numbers,
-    lines: Mapping[str, Lines],
+    lines: Mapping[str, ParameterLines],
 ) -> str:
-    """An output whose numbers are no sums of what each parameter does alone; empty: there is none."""
+    """An output of which a number differs from the sum of what each parameter does alone; empty: none does."""
     changes = {one.path: one.far[0] for one in moves.values()}
     outputs = list(dict.fromkeys(output for output, _ in base))
     other = _changed(system, changes)

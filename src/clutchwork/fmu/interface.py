@@ -14,10 +14,11 @@ from clutchwork.base.classes import dataclass
 from clutchwork.base.errors import ModelError, ModelWarning, Problem, UseError
 from clutchwork.declare.layout import ROW
 from clutchwork.declare.options import Options
-from clutchwork.fmu.exchange import ContinuousState, exchange, exchange_faults, nominal
+from clutchwork.fmu.exchange import ContinuousState, exchange, exchange_faults
 from clutchwork.fmu.following import Following, following
 from clutchwork.fmu.names import input_faults, is_text, matching, output_faults, parameter_faults, shown
 from clutchwork.fmu.parameters import parameters
+from clutchwork.fmu.sizes import largest, nominal
 from clutchwork.fmu.variables import FmuVariable, LeftOut, NumberThatFollows, VariableKind
 from clutchwork.results.channels import Channels, channels
 from clutchwork.results.forms import Mode
@@ -116,7 +117,7 @@ def interface(
     taken_kinds = tuple(kind for kind in possible if kinds is None or kind in kinds)
     if MODEL_EXCHANGE not in taken_kinds:
         return Interface(ready, options, t_end, variables, left, taken_kinds, not_exchanged=reasons)
-    whole = exchange(ready, known, variables)
+    whole = exchange(ready, known, variables, largest(pinned, options, t_end))
     return Interface(ready, options, t_end, whole.variables, left, taken_kinds, whole.states)
 
 

@@ -14,7 +14,7 @@ from clutchwork.declare.core import core
 from clutchwork.declare.layout import CAUSES, MODES, STATUS
 from clutchwork.declare.schema import Role
 from clutchwork.fmu.interface import MODEL_EXCHANGE, Interface
-from clutchwork.fmu.terms import Combination, Term, terms
+from clutchwork.fmu.terms import FormTerm, RowSum, terms
 from clutchwork.fmu.variables import FmuVariable, NumberThatFollows, Place, VariableKind
 from clutchwork.results.forms import Form
 from clutchwork.results.rows import numbers
@@ -181,10 +181,10 @@ def _form(to: ResourceWriter, form: Form) -> None:
     to.each(terms(form), lambda term: _term(to, term))
 
 
-def _term(to: ResourceWriter, term: Term) -> None:
+def _term(to: ResourceWriter, term: FormTerm) -> None:
     to.integer(term.gate)
     to.integer(0 if term.other is None else 1)
-    for part in (term.one, term.other or Combination(None, ())):
+    for part in (term.one, term.other or RowSum(None, ())):
         to.integer(0 if part.offset is None else 1)
         to.number(part.offset or 0.0)
         to.each(part.shares, lambda place: _place(to, place))

@@ -8,18 +8,18 @@ from typing import Any, NamedTuple
 from clutchwork.results.forms import Form
 
 
-class Combination(NamedTuple):
+class RowSum(NamedTuple):
     """offset + sum of share times number of the row; offset None: there is none."""
 
     offset: float | None
     shares: tuple[tuple[int, float], ...]
 
 
-class Term(NamedTuple):
+class FormTerm(NamedTuple):
     """A combination, or the product with another one; gate, place of the mode that makes it zero while locked."""
 
-    one: Combination
-    other: Combination | None
+    one: RowSum
+    other: RowSum | None
     gate: int
 
 
@@ -32,7 +32,7 @@ class NumberOfForm(NamedTuple):
     place: int  # in the row
 
 
-def terms(form: Form) -> list[Term]:
+def terms(form: Form) -> list[FormTerm]:
     """The terms of a form."""
     return list(_terms(form.data()))
 
@@ -50,7 +50,7 @@ def numbers_of(form: Form) -> dict[NumberOfForm, float]:
     return found
 
 
-def _terms(data: Sequence[Any]) -> Iterator[Term]:
+def _terms(data: Sequence[Any]) -> Iterator[FormTerm]:
     """Terms of a form from what `Form.data` says."""
     kind, *rest = data
     if kind == "q":
@@ -58,20 +58,20 @@ def _terms(data: Sequence[Any]) -> Iterator[Term]:
             yield from _terms(part)
     elif kind == "p":
         one, other = (next(_terms(part)) for part in rest)
-        yield Term(one.one, other.one, other.gate)
+        yield FormTerm(one.one, other.one, other.gate)
     elif kind == "s":
         yield from (one._replace(gate=rest[1]) for one in _terms(rest[0]))
     else:
-        yield Term(_combination(kind, rest), None, -1)
+        yield FormTerm(_combination(kind, rest), None, -1)
 
 
-def _combination(kind: str, rest: Sequence[Any]) -> Combination:
+def _combination(kind: str, rest: Sequence[Any]) -> RowSum:
     """Offset and shares of numbers of the row."""
     if kind == "c":
-        return Combination(None, ((rest[0], 1.0),))
+        return RowSum(None, ((rest[0], 1.0),))
     if kind == "a":
         place, scale, offset = rest
-        return Combination(offset, ((place, scale),))
+        return RowSum(offset, ((place, scale),))
     if kind == "t":
-        return Combination(None, tuple((place, -1.0 if rest[1] else 1.0) for place in rest[0]))
-    return Combination(None, tuple(zip(*rest, strict=True)))
+        return RowSum(None, tuple((place, -1.0 if rest[1] else 1.0) for place in rest[0]))
+    return RowSum(None, tuple(zip(*rest, strict=True)))
