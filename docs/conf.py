@@ -60,6 +60,7 @@ maximum_signature_line_length = 88
 
 html_theme = "furo"
 html_title = "clutchwork"
+html_favicon = "_static/favicon.svg"
 html_static_path = ["_static", "reference/static"]
 # pages that compute, below live/
 html_extra_path = ["reference/pages"]

@@ -4,6 +4,7 @@
 - A link to another folder of the project, which has no page, is its words.
 - A picture that links to the program of a live page becomes that page.
 - Links to equations and anchors become those of Sphinx.
+- Captions of the contents are headings of a level.
 - The lists of a section "All pages" are the contents of the site too; those of docs/api.md become documentation of
   Python objects.
 """
@@ -121,7 +122,22 @@ def _read(_app: Any, name: str, content: list[str]) -> None:
     content[0] = site(content[0], name)
 
 
+def levels(html: str) -> str:
+    """Captions of the contents as headings with a level, which screen readers ask for."""
+    return html.replace('role="heading"', 'role="heading" aria-level="2"')
+
+
+def _shown(
+    _app: Any, _page: str, _template: str, context: dict[str, Any], _tree: Any
+) -> None:
+    for part in ("furo_navigation_tree", "body"):
+        if part in context:
+            context[part] = levels(context[part])
+
+
 def setup(app: Any) -> dict[str, Any]:
-    """Register what changes pages as they are read."""
+    """Register what changes pages as they are read and written."""
     app.connect("source-read", _read)
+    # after the theme has made its contents
+    app.connect("html-page-context", _shown, priority=900)
     return {"parallel_read_safe": True, "parallel_write_safe": True}

@@ -96,6 +96,10 @@ def test_every_declaration_that_is_linked_has_its_page(role: Role) -> None:
             assert not (ROOT / path).exists() or forge.reference(path) == f"reference/{room}/{kind}.md"
 
 
+def test_captions_are_headings_of_a_level() -> None:
+    assert forge.levels('<p class="caption" role="heading">') == '<p class="caption" role="heading" aria-level="2">'
+
+
 def test_a_picture_of_a_live_page_becomes_that_page() -> None:
     made = forge.site("[![A block: its speed](../pictures/pages/stick_slip.png)](../figures/live.py)", "guide/x")
     assert 'src="../live/stick_slip.html#compact" title="A block"' in made

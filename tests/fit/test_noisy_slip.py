@@ -43,7 +43,7 @@ def test_a_few_of_a_thousand_signs_do_no_harm(seed: int) -> None:
     for name, true in (("static", 0.13), ("kinetic", 0.1), ("speed", 3.0)):
         assert result[name].value == pytest.approx(true, rel=0.1)
     if np.min(turned, initial=0.0) < -0.05:
-        assert "the noise of the slip turned the sign" in result.notes
+        assert "the noise of the slip reversed the sign" in result.notes
         with pytest.raises(FitError, match="likely noise of the slip reversed the sign of"):
             fit_law(cw.Stribeck(static=0.2, kinetic=0.1, speed=1.0, viscous=1e-4), **data, rest=0.0)
 

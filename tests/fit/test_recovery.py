@@ -80,7 +80,7 @@ def test_torque_on_the_follower_is_turned() -> None:
     along = fit_law(law, **data.arguments)
     against = fit_law(law, **{**data.arguments, "torque": -data.torque})
     assert against["kinetic"].value == along["kinetic"].value
-    assert "sign was turned" in against.notes
+    assert "sign was reversed" in against.notes
     assert "sign" not in along.notes
 
 

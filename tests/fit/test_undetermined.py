@@ -147,7 +147,7 @@ def test_a_wrong_law_is_seen_in_its_residuals() -> None:
         cw.Exponential(static=0.16, slow=0.15, fast=0.1, speed=1.0), **data, free=["slow", "fast", "speed"]
     )
     assert result.alike > 0.5
-    assert "the law misses something" in result.notes
+    assert "the law lacks an effect" in result.notes
 
 
 def test_noise_of_the_slip_above_rest_is_recognised() -> None:

@@ -118,7 +118,7 @@ def test_heads_that_lie_do_not_let_a_bomb_pass(tmp_path: Path, monkeypatch: pyte
             "its modelIdentifier is '../../small', which cannot be the name of a library",
         ),
         (SOUND.replace(b'"2.0"', b'"1.0"'), "it is of FMI '1.0'; what can be run is 2.0 and 3.0"),
-        (SOUND.replace(b"CoSimulation", b"ModelExchange"), "it is not for co-simulation"),
+        (SOUND.replace(b"CoSimulation", b"ModelExchange"), "it does not support co-simulation"),
         (SOUND.replace(b'"7"', b'"-7"'), "its variable 'steps' has no valueReference"),
         (SOUND.replace(b'"1e4"', b'"0"'), "its unit 'decibar' has a factor or an offset that is not a number"),
     ],

@@ -67,7 +67,7 @@ WRONG: dict[str, tuple[dict[str, Any], tuple[str, ...]]] = {
         {"elements__P": ["in", "pump"], "shafts": []},
         ('element "P"', "'pump'", "under `shafts`"),
     ),
-    "set twice": ({"sets__P5": EIGHT_SPEED["sets"]["P4"]}, ('set "P5"', "says again")),
+    "set twice": ({"sets__P5": EIGHT_SPEED["sets"]["P4"]}, ('set "P5"', "repeats what other sets")),
 }
 
 

@@ -56,7 +56,7 @@ def test_at_an_event_what_comes_after_it_is_taken(run):
     lock = next(event.time for event in run.events if event.after == "locked")
     lin = cw.linearise(run, at=lock)
     assert lin.contacts == {"c1": "locked"}
-    assert any("c1 goes from" in note and "what comes after it is taken" in note for note in lin.notes)
+    assert any("c1 goes from" in note and "the motion after it is used" in note for note in lin.notes)
     assert "c1 goes from" in str(lin)
     lin = cw.linearise(run, at=0.5)
     assert any("c1.normal_force has a knot at this instant" in note for note in lin.notes)
@@ -82,7 +82,7 @@ def test_an_idle_freewheel_and_a_contact_without_load():
     d.add(cw.OneWayClutch("f1", base=a, follower=b))
     d.add(cw.Clutch("c1", base=b, follower=c, normal_force=0.0, **LINING))
     text = " ".join(cw.linearise(d).notes)
-    assert "f1 is locked and holds nothing" in text
+    assert "f1 is locked without load" in text
     assert "c1 is open, its load exactly zero" in text
 
 

@@ -136,7 +136,7 @@ def test_a_cell_that_was_run_again_is_told_as_the_likely_cause() -> None:
     d.shaft("engine", inertia=1.0)
     d.mass("housing", mass=1.0)
     twice, taken = d.check()
-    assert "where a cell of a notebook was run again, make the driveline anew in it" in str(twice)
+    assert "if a notebook cell was run again, create the driveline in it" in str(twice)
     assert "notebook" not in str(taken)
 
 

@@ -149,7 +149,7 @@ def test_nothing_else_is_added_to_a_study(tmp_path: Path, name: str) -> None:
     other, texts = OTHERS[name]
     with pytest.raises(cw.StudyError) as error:
         run(tmp_path, **other)
-    assert "holds a study of something else, so nothing can be added to it" in str(error.value)
+    assert "holds another study, so nothing can be added to it" in str(error.value)
     assert "give another folder, or the definition that it was started with" in str(error.value)
     assert [text for text in texts if text not in str(error.value)] == []
 

@@ -29,7 +29,7 @@ export class Editor implements Part {
     const place = element("div", { class: "plot editor" });
     const names = tables.map((i) => this.table(i).name);
     const keys = element("ul", { class: "legend" }, ...names.map((name, k) => element("li", {}, element("span", { class: `key c${k % 8}` }, element("span", { class: "swatch" }), name))));
-    const help = element("p", { class: "help" }, "Drag a knot, or select one with Tab and move it with the arrow keys (Shift: finely). Double click: a new knot. Delete: away with it.");
+    const help = element("p", { class: "help" }, "Drag a knot, or select one with Tab and move it with the arrow keys (Shift: fine steps). Double click: adds a knot. Delete: removes it.");
     const title = element("h2", {}, names.length > 1 ? "Drag these" : "Drag this", element("span", { class: "unit" }, this.word ? ` in ${this.word}` : ""));
     this.root = element("section", { class: "panel drag", "aria-label": `knots of ${names.join(", ")}` }, title, keys, place, help);
     this.over = new TimePlot(app, place, {

@@ -5,7 +5,7 @@ import { gearTables, sentence, type GearboxData, type GearData } from "./gears";
 
 const SPEEDS = { max: 6000, start: 1500, unit: "1/min" };
 const TORQUES = { max: 800, start: 300, unit: "N m" };
-const CAPTIONS: Record<string, string> = { stick: "Power flow", lever: "Levers: distances by the teeth, places by the speeds" };
+const CAPTIONS: Record<string, string> = { stick: "Power flow", lever: "Levers: distances from the teeth, positions from the speeds" };
 
 class Page {
   private readonly now = element("div", { class: "curves" });

@@ -36,7 +36,7 @@ export function sentence(data: GearboxData, gear: GearData, speed: number, torqu
   const carried = gear.ratio * gear.efficiency * torque;
   const losses = gear.efficiency < 1 ? `, efficiency ${number(100 * gear.efficiency)} %` : "";
   const published = gear.published === null ? "" : ` (published ${number(gear.published)})`;
-  const circle = gear.circulating > 1e-9 ? ` ${number(100 * gear.circulating, 3)} % of the power runs in a circle.` : "";
+  const circle = gear.circulating > 1e-9 ? ` ${number(100 * gear.circulating, 3)} % of the power circulates.` : "";
   return `Ratio ${number(gear.ratio)}${published}: the output turns at ${number(turns)} 1/min with ${number(carried)} N m, ${number(Math.abs(turns * carried) * KILOWATTS)} kW${losses}.${circle}`;
 }
 

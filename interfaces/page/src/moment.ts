@@ -124,7 +124,7 @@ export class Levers implements Part {
 
   constructor(private readonly app: App) {
     const pictures = element("div", { class: "levers" });
-    this.root = element("section", { class: "panel moment", "aria-label": "lever diagrams at the time of the cursor" }, element("h2", {}, "Its gears as levers"), pictures);
+    this.root = element("section", { class: "panel moment", "aria-label": "lever diagrams at the time of the cursor" }, element("h2", {}, "Its gear sets as levers"), pictures);
     for (const lever of app.data.levers) pictures.append(this.picture(lever));
     this.scale = LEVER.reach / this.fastest();
     this.update = this.at = whileSeen(this.root, () => this.draw());

@@ -12,7 +12,7 @@ export class Events implements Part {
   private readonly list = element("ol", { class: "events" });
 
   constructor(private readonly app: App) {
-    this.root = element("section", { class: "panel", "aria-label": "events" }, element("h2", {}, "What happens"), this.list);
+    this.root = element("section", { class: "panel", "aria-label": "events" }, element("h2", {}, "Events"), this.list);
     this.update(app.run, true);
   }
 
@@ -39,7 +39,7 @@ export class Results implements Part {
   constructor(private readonly app: App) {
     this.first = measures(app.data, app.first);
     const head = element("thead", {}, element("tr", {}, ...["", "now", "at the start", "change"].map((word) => element("th", { scope: "col" }, word))));
-    this.root = element("section", { class: "panel", "aria-label": "results" }, element("h2", {}, "What it comes to"), element("div", { class: "wide" }, element("table", {}, head, this.body)));
+    this.root = element("section", { class: "panel", "aria-label": "results" }, element("h2", {}, "Results"), element("div", { class: "wide" }, element("table", {}, head, this.body)));
     this.update = whileSeen(this.root, () => this.draw(app.run));
     this.update();
   }
@@ -80,7 +80,7 @@ export class Verdict implements Part {
   update(run: Result): void {
     const { data, first, session } = this.app;
     const why = session.refusal();
-    const refused = why && `There is no driveline with these numbers: ${why}. The curves are those before.`;
+    const refused = why && `These numbers make no valid driveline: ${why}. The curves are unchanged.`;
     const open = unlocked(data, first, run);
     const never = open.length ? `${open.join(" and ")} never ${open.length > 1 ? "lock" : "locks"}.` : "";
     const wrong = [refused, ending(data, run), never].filter(Boolean).join(" ");

@@ -13,7 +13,7 @@ export class Sliders implements Part {
   private readonly outputs: HTMLOutputElement[] = [];
 
   constructor(private readonly app: App) {
-    this.root = element("section", { class: "panel turn", "aria-label": "numbers to turn" }, element("h2", {}, "Turn these"));
+    this.root = element("section", { class: "panel turn", "aria-label": "parameters" }, element("h2", {}, "Turn these"));
     app.data.sliders.forEach((slider, i) => this.root.append(this.line(slider, i)));
     this.update();
   }
@@ -49,12 +49,12 @@ export class Sliders implements Part {
 
 /** A value in words; numbers with different starts have their own until they are turned. */
 export function told({ start, starts, unit }: SliderData, value: number): string {
-  return starts.length > 1 && value === start ? `${quantity(starts[0]!, unit)} to ${quantity(starts.at(-1)!, unit)}, each its own` : quantity(value, unit);
+  return starts.length > 1 && value === start ? `${quantity(starts[0]!, unit)} to ${quantity(starts.at(-1)!, unit)}, each with its own` : quantity(value, unit);
 }
 
 function title({ doc, names, starts }: SliderData): string {
   if (names.length === 1) return doc;
-  return `${doc}; of ${names.join(", ")}${starts.length > 1 ? ", which start from different values; turned, all take this one" : ""}`;
+  return `${doc}; of ${names.join(", ")}${starts.length > 1 ? ", which start from different values; once moved, all take this one" : ""}`;
 }
 
 /** The value at a place of a slider; the start stands exactly where it is nearest. */

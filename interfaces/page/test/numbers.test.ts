@@ -76,7 +76,7 @@ test("a slider has its start exactly", () => {
 
 test("numbers with different starts keep their own until they are turned", () => {
   const slider: SliderData = { name: "*.g", names: ["a.g", "b.g"], unit: "Pa", doc: "", start: 3e5, starts: [2e5, 4e5], values: [1e5, 5e5], places: [1, 2], direct: true };
-  assert.equal(told(slider, slider.start), "2 bar to 4 bar, each its own");
+  assert.equal(told(slider, slider.start), "2 bar to 4 bar, each with its own");
   assert.equal(told(slider, 3.01e5), "3.01 bar");
 });
 

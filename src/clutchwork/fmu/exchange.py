@@ -75,7 +75,7 @@ def exchange_faults(system: System, inputs: Sequence[FmuVariable], version: str)
         yield f"'{found.elements[number].name}' has a ratio that varies, a constraint that a solver does not keep"
     for contact, place in zip(found.contacts, system.contact_place.tolist(), strict=True):
         if place >= 0:
-            yield f"'{contact.name}' has impacts, after which a solver cannot tell whether it bounces or rests"
+            yield f"'{contact.name}' has impacts, after which a solver cannot decide whether it bounces or rests"
     if speeds:
         for number in system.load_contact.tolist():
             yield f"the friction of '{found.contacts[number].name}' depends on torques, beside a prescribed speed"

@@ -259,7 +259,8 @@ def above(axes: Axes, handles: Sequence[Any], labels: Sequence[str], columns: in
     """Legend above axes of a narrow picture, over the words at events."""
     axes.legend(
         handles, labels, loc="lower left", bbox_to_anchor=(0.0, 1.0), borderaxespad=1.3, ncols=columns,
-        title=title or None, title_fontsize=7.5, alignment="left", handlelength=2.0, labelspacing=0.3, columnspacing=0.8,
+        title=title or None, title_fontsize=7.5, alignment="left", handlelength=2.0, labelspacing=0.3,
+        columnspacing=0.8,
     )  # fmt: skip
 
 

@@ -208,7 +208,7 @@ class Simulators:
         return np.asarray(self._status != DONE)
 
     def message(self, number: int) -> str:
-        """Why a run failed; "" if it has not."""
+        """Why a run failed; "" for one that can go on."""
         (number,) = self._chosen("sims.message", [number]).tolist()
         status = int(self._status[number])
         return "" if status == DONE else message_of(self._own[number], status, self._runs[number])
