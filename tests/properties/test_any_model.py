@@ -88,7 +88,6 @@ KEPT: dict[str, Plain] = json.loads(Path(__file__).with_name("kept_models.json")
 OPEN = {
     "a row behind a jam at a dead point, where another event falls into the step of the jam": 320499,
     "a lag that begins with a speed, of a start that is later": 70044,
-    "shares of a contact that moves next to nothing beside a dead point": 5014797,
     "the limit of five loads that depend on each other, of which four are tried in all ways": 3002924,
     "a motor whose torque jumps as it leaves rest, in the row there": 3004861,
 }
@@ -170,6 +169,7 @@ MENDED: dict[str, list[int]] = {
     "a tie that two cams lost and found again, elsewhere": [5003392],
     "a ratio that jumped from zero beside what others held": [6000289],
     "a set that passed the pole of a ratio within a step": [3005640],
+    "shares of a contact that moves next to nothing beside a dead point": [5014797],
     "a redundant contact that held nothing at a ratio within a step": [5007866, 12004583],
     "a load that passed zero within a step": [8002589, 12001944],
     "a limit that was found off the ties of a ratio": [9001844],
