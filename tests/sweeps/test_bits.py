@@ -112,6 +112,7 @@ def test_random_drivelines_random_names():
     over_seeds(check, amount(40))
 
 
+@pytest.mark.random
 def test_what_no_output_reads_has_no_say():
     """Work and angles that nobody reads are left out: each output alone has the bits that it has beside all others."""
 
