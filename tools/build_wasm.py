@@ -76,7 +76,7 @@ def masks() -> list[str]:
     from clutchwork.declare.schema import Role, kinds
     from clutchwork.page.core import LEFT_OUT as UNUSED
 
-    found = []
+    found = ["-DCLUTCHWORK_NO_DRAWS"]
     for role, names in UNUSED.items():
         known = kinds(Role(role))
         mask = sum(1 << place for place, kind in enumerate(known) if kind not in names)
