@@ -78,7 +78,7 @@ def masks() -> list[str]:
     sys.path.insert(0, str(ROOT / "src"))
     from clutchwork.declare.schema import Role, kinds
 
-    found = []
+    found = ["-DCLUTCHWORK_NO_DRAWS"]
     for role, names in LEFT_OUT.items():
         mask = sum(1 << place for place, kind in enumerate(kinds(Role(role))) if kind not in names)
         found.append(f"-DCLUTCHWORK_{role.upper()}={mask:#x}ull")

@@ -161,8 +161,12 @@ inline bool shared_in_range(const System& s) {
   bool good = s.shared <= s.states;
   for (std::int64_t i = 0; good && i < s.flows; ++i) good = flow_fits(s, i);
   for (std::int64_t i = 0; good && i < s.processes; ++i) good = process_fits(s, i);
-  for (std::int64_t j = 0; good && j < s.draws; ++j) good = draw_fits(s, j);
-  good = good && sums_fit(s);
+  if (with_draws) {
+    for (std::int64_t j = 0; good && j < s.draws; ++j) good = draw_fits(s, j);
+    good = good && sums_fit(s);
+  } else {
+    good = good && s.draws == 0;
+  }
   for (std::int64_t i = 0; good && i < s.supplies; ++i) {
     good = s.supply_element[i] >= 0 && s.supply_element[i] < s.elements;
   }

@@ -85,7 +85,7 @@ def test_a_lag_is_led() -> None:
     """A torque that is asked for on a ramp is there on the ramp, one period behind it at most."""
     lag, period, slope = 0.04, 0.01, 500.0
     one = cw.shifts.ElementActuator("x.command", (0.0, 1e6), (0.0, 1e3), 0.0, 0.0, lag)
-    driver, torque, worst = ActuatorDriver(one, 0.0, level=1.0), 0.0, 0.0
+    driver, torque, worst = ActuatorDriver(one, 0.0, 0.0, level=1.0), 0.0, 0.0
     for number in range(40):
         time = number * period
         command = driver.command(slope * time, period if number else 0.0, period, open_=False)

@@ -266,7 +266,7 @@ void whole_shared(const FullForm<T>& form, const Whole<S>& e) {
     if (sys.flow_from[f] >= 0) x[sys.flow_from[f]] -= q;
     if (sys.flow_to[f] >= 0) x[sys.flow_to[f]] += q;
   }
-  if (sys.draws > 0) gather<T, S>(ws, e.y + form.nz(), e.input);
+  if (with_draws && sys.draws > 0) gather<T, S>(ws, e.y + form.nz(), e.input);
   for (int i = 0; i < sys.processes; ++i) whole_process(form, e, i);
 }
 

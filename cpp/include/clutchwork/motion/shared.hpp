@@ -44,10 +44,17 @@ CLUTCHWORK_HOT void inputs_with(Workspace<T>& ws, Real<T> t, const T* state) {
 /// from its supply, work and heat.
 enum class Read : int { rate, heat, supply };
 
+/// Whether processes draw from each other; a core without such kinds does without.
+#ifdef CLUTCHWORK_NO_DRAWS
+inline constexpr bool with_draws = false;
+#else
+inline constexpr bool with_draws = true;
+#endif
+
 /// Whether a reference reads the sum of the flows into a process.
 template <class T>
 bool is_sum(const Workspace<T>& ws, int code) {
-  return code >= ws.sys.inputs + ws.sys.shared + 3 * ws.n_directions;
+  return with_draws && code >= ws.sys.inputs + ws.sys.shared + 3 * ws.n_directions;
 }
 
 /// Where such a reference points: its branch, -1 while that is locked.
@@ -179,7 +186,7 @@ template <class T>
     if (sys.flow_from[f] >= 0) x[sys.flow_from[f]] -= q;
     if (sys.flow_to[f] >= 0) x[sys.flow_to[f]] += q;
   }
-  if (sys.draws > 0) gather(ws, state, ws.in.u);
+  if (with_draws && sys.draws > 0) gather(ws, state, ws.in.u);
   for (int i = 0; i < sys.processes; ++i) {
     visit_process(sys.process_kind[i], [&](auto tag) {
       using E = typename decltype(tag)::type;
