@@ -49,7 +49,9 @@ def library(platform: str) -> Path:
     path = folder / f"{platform}{ending}"
     exports = ROOT / "interfaces" / "fmi" / "exports.map"
     plain = ["-s", "-Wl,--gc-sections", f"-Wl,--version-script={exports}"]
-    sections = plain if ending == ".so" else ["-s"] if ending == ".dll" else []
+    # an archive gives it another name and place; Apple's linker would note the folder of this build
+    apple = ["-Wl,-install_name,@rpath/clutchwork.dylib"]
+    sections = plain if ending == ".so" else ["-s"] if ending == ".dll" else apple
     zig("-target", target, "-shared", *sections, *objects, "-o", path)
     packed = WHERE / f"{platform}.{schema()}{ending}.gz"
     WHERE.mkdir(exist_ok=True)
