@@ -197,7 +197,13 @@ def test_wrong_calls_are_told_at_once(exported: Path) -> None:
     with pytest.raises(cw.UseError) as raised:
         cw.FMU(exported, "1 m", inputs={"a": 1}, parameters={"b": "c"}, time_limit=0)  # type: ignore[dict-item]
     told = str(raised.value)
-    for words in ("period is '1 m'", "inputs: 'a' is 1", "parameters: 'b' is 'c'", "time_limit is 0", "give trust=True"):
+    for words in (
+        "period is '1 m'",
+        "inputs: 'a' is 1",
+        "parameters: 'b' is 'c'",
+        "time_limit is 0",
+        "give trust=True",
+    ):
         assert words in told
     with pytest.raises(cw.FMUError, match=r"'command' is not an input; inputs are command.torque_signal|did you mean"):
         cw.FMU(exported, PERIOD, inputs={"command": "c1.slip"}, trust=True)
