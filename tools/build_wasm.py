@@ -43,7 +43,7 @@ FLAGS = [
 ]
 SECTION = "clutchwork"
 # kinds that no page has room for, by role
-LEFT_OUT = runpy.run_path(str(ROOT / "src/clutchwork/page/left_out.py"))["LEFT_OUT"]
+KINDS_LEFT_OUT = runpy.run_path(str(ROOT / "src/clutchwork/page/left_out.py"))["LEFT_OUT"]
 
 
 # small rather than fast, and as a whole: every part of the core is there once
@@ -79,7 +79,7 @@ def masks() -> list[str]:
     from clutchwork.declare.schema import Role, kinds
 
     found = ["-DCLUTCHWORK_NO_DRAWS"]
-    for role, names in LEFT_OUT.items():
+    for role, names in KINDS_LEFT_OUT.items():
         mask = sum(1 << place for place, kind in enumerate(kinds(Role(role))) if kind not in names)
         found.append(f"-DCLUTCHWORK_{role.upper()}={mask:#x}ull")
     return found

@@ -331,7 +331,9 @@ class ParallelSequence:
         self._start, self.loaded = self._y(now), now.input_torque
         self._speed = np.array([self.rates.get(name, 0.0) for name in one.on])
         self._integral, self._passed = np.zeros(len(one.on)), 0.0
-        self._pulls = float(one.input @ self._start) * now.input_torque > 0.0
+        # of several that open one may be wanted later
+        alone = len(one.on) == 1 == len(one.off)
+        self._pulls = alone and float(one.input @ self._start) * now.input_torque > 0.0
         self._output = Trend(now.output_speed)
         change = -float(one.input @ self._start)
         time, longer = max(with_.inertia_time, 1e-9), abs(change) / max(with_.usual_step, 1e-9)
