@@ -146,9 +146,13 @@ class Phase : public StepSize<typename Form::Scalar> {
     if (shown != Status::running) return leave(shown);
     // counted as one, so that a run counts alike wherever it is left
     linearized ? void(++ws_.statistics.jacobians) : linearize_start();
+    h_ = first_length(event);
+  }
+
+  double first_length(bool event) {
     // kept, so that a run takes the same steps whether or not it is asked for a row here
     if (event) ws_.last_step *= calls_.restart;
-    h_ = ws_.last_step > 0 ? ws_.last_step : first_step(taken_form(), taken_step(), t_end_ - ws_.time);
+    return ws_.last_step > 0 ? ws_.last_step : first_step(taken_form(), taken_step(), t_end_ - ws_.time);
   }
 
   // What guards ask for where they were hit.
