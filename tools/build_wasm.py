@@ -21,7 +21,7 @@ MADE = ROOT / "build" / "wasm"
 WASM = ROOT / "src" / "clutchwork" / "page" / "static" / "core.wasm"
 HEADER = ROOT / "cpp" / "include" / "clutchwork" / "c_api.h"
 
-NAMES = ("c_api", "components", "phases_small", "phases_sparse", "phases_full", "fixed_steps")
+NAMES = ("components", "c_api", "fixed_steps", "phases_full", "phases_small", "phases_sparse")
 SOURCES = [ROOT / "cpp" / "src" / f"{name}.cpp" for name in NAMES]
 # what a step spends its time in is inlined by force, as in the native build
 HOT = {"phases_small", "phases_sparse"}
@@ -99,10 +99,11 @@ def compiled() -> list[Path]:
         zig(*TARGET, *FLAGS, *left_out, *inlined, *includes, "-c", source, "-o", made)
         return made
 
-    # the longest first
+    # the longest first; linked in the order of the list, in which the module is smallest
     order = sorted(SOURCES, key=lambda source: source.stem not in {*HOT, "phases_full"})
     with ThreadPoolExecutor(int(os.environ.get("JOBS") or os.cpu_count() or 2)) as pool:
-        return list(pool.map(one, order))
+        made = dict(zip(order, pool.map(one, order), strict=True))
+    return [made[source] for source in SOURCES]
 
 
 def marked(module: bytes) -> bytes:

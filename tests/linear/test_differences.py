@@ -77,6 +77,8 @@ def moving(cls: Any) -> cw.Driveline:
         values["carrier"] = nodes["third"]
     # two sides want two shafts
     values |= {name: nodes["other"] for name in ("turbine", "forward") if isinstance(values.get(name), cw.Node)}
+    # a piston at its stop can be pushed one way alone
+    values |= {"pressures": {"A": 4e5}} if cls is cw.ValveBody else {}
     turning.add(cls("x", **values))
     return d if turning.check() else turning
 

@@ -313,5 +313,5 @@ def test_what_a_port_may_be() -> None:
 
 def test_a_page_refuses_it_by_name(tmp_path: Path) -> None:
     run = circuit().simulate(0.1)
-    with pytest.raises(cw.UseError, match="is a HydraulicOil, which pages have no room for"):
+    with pytest.raises(cw.ClutchworkError, match="is a HydraulicOil, which pages have no room for"):
         run.page(tmp_path / "circuit.html")

@@ -237,6 +237,24 @@ def acceleration(seed: int) -> str:
     return f"off by {off:.3g} rad/s" if off > 1e-9 else ""
 
 
+@pytest.mark.parametrize("joined", [False, True])
+def test_an_acceleration_begins_with_what_a_gearbox_in_gear_gives(joined: bool) -> None:
+    """The speed of its input is given; behind a rigid joint too, through a shaft without inertia."""
+    d = cw.Driveline("in gear")
+    a, out = d.shaft("a", inertia=0.8, speed=-69.4), d.shaft("out", inertia=0.05)
+    into = a
+    if joined:
+        into = d.shaft("into", inertia=0.0)
+        d.add(cw.Gear("joint", input=a, output=into, ratio=1.0))
+    box = cw.Gearbox.load("sa-sprinter7")
+    d.add(cw.Transmission("box", input=into, output=out, gearbox=box, torque=561.0, inertia=0.0475, gear="2"))
+    d.add(cw.PrescribedAcceleration("m", shaft=out, acceleration=-0.5))
+    run = d.simulate(0.01)
+    assert run["a.speed"][0] == pytest.approx(-69.4, rel=1e-12)
+    assert run["out.speed"][0] == pytest.approx(-69.4 / box.ratios["2"], rel=1e-12)
+    assert not run.events.changes()
+
+
 def gearbox(seed: int) -> str:
     """A gearbox in gear starts the same behind rigid gears as on the shaft itself."""
     rng = np.random.default_rng([seed, 81])

@@ -9,36 +9,15 @@ import pytest
 
 import clutchwork as cw
 from clutchwork.shifts.driver import ActuatorDriver
+from support.eight_speed_shifts import BOX, qualities, shift, speed
 from support.shift_car import SENSED, car, hydraulic
 
-BOX = cw.Gearbox.load("zf-8hp70")
 FORWARD = [gear for gear, ratio in BOX.ratios.items() if ratio > 0.0]
-
-
-def speed(before: str, after: str) -> float:
-    """Of the input [rad/s], so that the engine can follow: at most 450 behind a downshift, at least 75 else."""
-    step = BOX.ratios[after] / BOX.ratios[before]
-    return min(200.0, 450.0 / step) if step > 1.0 else max(200.0, 75.0 / step)
-
-
-def shift(
-    model: cw.System, before: str, after: str, pedal: float, **more: object
-) -> tuple[cw.Trajectory, cw.shifts.ShiftController]:
-    plant = more.pop("plant", None) or cw.shifts.plant_of(model, BOX)
-    control = cw.shifts.ShiftController(BOX, plant, gear=before, **more)  # type: ignore[arg-type]
-    sim = cw.Simulator(model, rtol=1e-6)
-    cw.shifts.drive(sim, control, 0.5, sensed=SENSED, throttle=lambda _: pedal)
-    control.request(after)
-    return cw.shifts.drive(sim, control, 2.6, sensed=SENSED, throttle=lambda _: pedal), control
 
 
 def fill(known: cw.shifts.Learnt | float) -> float:
     """A fill time [s] that was given or learnt."""
     return known.fill_time if isinstance(known, cw.shifts.Learnt) else known
-
-
-def qualities(run: cw.Trajectory) -> list[cw.shifts.ShiftQuality]:
-    return cw.shifts.qualities(run, BOX, torque="half_shafts.torque", acceleration="car.acceleration")
 
 
 def test_a_fill_test_finds_what_was_declared() -> None:

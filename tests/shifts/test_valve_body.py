@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 import clutchwork as cw
-from shifts.test_actuators import BOX, qualities, shift, speed
+from support.eight_speed_shifts import BOX, qualities, shift, speed
 from support.shift_car import SENSED, car, with_valve_body
 
 # single and double changes, long and short steps; all of them: examples/valve_body/valve_body.py --all

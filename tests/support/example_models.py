@@ -105,6 +105,7 @@ MODELS: dict[str, Callable[[], Case]] = {
 WITHOUT = {
     "fit": "measured points of a lining",
     "hill_starts": "controllers in Python act on the car of car_launch",
+    "valve_body": "pages have no room for hydraulics",
     "shift_controller": "a controller in Python acts on the gearbox of six_speed",
 }
 

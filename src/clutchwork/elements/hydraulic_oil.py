@@ -8,8 +8,8 @@ from clutchwork.declare import Component, Found, Role, Signal, SignalLike, State
 from clutchwork.elements.bases.ratios import at_start
 from clutchwork.gearbox.losses import Oil
 
-# temperature at which densities are given, and the usual one [K]
-DENSE, USUAL = 288.15, 353.15
+# temperature at which densities are given, the usual one, and that below which oil is solid [K]
+DENSE, USUAL, COLDEST = 288.15, 353.15, 200.0
 
 
 @component(
@@ -47,7 +47,8 @@ class HydraulicOil(Component):
         ]
 
     def at(self, kelvin: float) -> tuple[float, float]:
-        """Kinematic viscosity [m2/s] and density [kg/m3] at a temperature [K]: equation (1) of the theory."""
+        """Kinematic viscosity [m2/s] and density [kg/m3] at a temperature [K] of 200 K or more: equation (1)."""
+        kelvin = max(kelvin, COLDEST)
         density = self.density_15 * (1.0 - self.expansion * (kelvin - DENSE))
         return Oil(self.viscosity_40, self.viscosity_100).viscosity(kelvin), density
 

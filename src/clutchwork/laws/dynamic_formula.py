@@ -65,6 +65,8 @@ class DynamicFormula(FormulaLaw):
             fault, remedy = f"must be a table of 1 to {MOST_STATES} rates by the names of states", 'write {"z": "..."}'
             return [("rates", fault, remedy)]
         numbers = {one.name for one in type(self).numbers}
+        if not all(isinstance(rate, str) for rate in rates.values()):
+            return [("rates", "must hold an expression for each state, as a string", 'write {"z": "..."}')]
         taken = [name for name in rates if not _is_state(name) or name in numbers]
         if taken:
             return [

@@ -100,6 +100,9 @@ def _begun(model: Mechanism, made: Kinematics) -> Callable[[int], float]:
             echelon.add({**made.speeds[node], KNOWN: speed})
         for _, tie in start_rows(model, made):
             echelon.add(tie)
+        for _, tie in start_grips(model, made):
+            if echelon.rest(tie).keys() - {KNOWN}:
+                echelon.add(tie)
 
     def speed_of(node: Node | None) -> Fraction | None:
         if node is None or node.fixed:

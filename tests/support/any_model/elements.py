@@ -312,7 +312,23 @@ def _jenkins(rng: Rng) -> Plain:
 
 
 # fields whose values depend on each other; None: left out
+def _valve_body(rng: Rng) -> Plain:
+    """One of the sizes of a passenger car, for one or two elements."""
+    names = ["A", "B"][: int(rng.integers(1, 3))]
+    return {
+        "piston_areas": {name: log(rng, 1e-3, 1e-2) for name in names},
+        "pressures": {name: log(rng, 1e4, 1e6) for name in names if rng.random() < 0.5},
+        "displacement": log(rng, 5e-7, 5e-6),
+        "valve_area": log(rng, 3e-6, 3e-5),
+        "orifice_area": log(rng, 1e-6, 1e-5),
+        "kiss_stroke": log(rng, 1e-3, 5e-3),
+        "density": 850.0,
+        "viscosity": log(rng, 3e-6, 1e-4),
+    }
+
+
 RECIPES: dict[str, Callable[[Rng], Plain]] = {
+    "valve_body": _valve_body,
     "gear": _gear,
     "bevel_gear": _gear,
     "mesh": _mesh,

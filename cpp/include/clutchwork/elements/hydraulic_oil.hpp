@@ -16,7 +16,7 @@ struct HydraulicOil : declared::HydraulicOil {
 
   template <class T, class S>
   static void state_rates(const Params<T>& p, const At<S>& at, S* rates) {
-    const S kelvin = at.input[Input::temperature];
+    const S given = at.input[Input::temperature], kelvin = value(given) < coldest ? S(coldest) : given;
     const T cold = twice_log(p.viscosity_40), warm = twice_log(p.viscosity_100);
     const T slope = (cold - warm) / T(log(373.15 / 313.15));
     const S thick = exp(exp(S(cold) - slope * log(kelvin / T(313.15)))) - T(0.7);
@@ -25,6 +25,9 @@ struct HydraulicOil : declared::HydraulicOil {
   }
 
  private:
+  /// Below it oil is solid, and the law has no finite value. [K]
+  static constexpr double coldest = 200;
+
   /// The states are in mm2/s, in which the law was written.
   template <class T>
   static T twice_log(const T& viscosity) {
