@@ -52,7 +52,7 @@ class Actuation:
             name: ActuatorDriver(one, one.fill_time, one.kiss) for name, one in self.plant.actuators.items()
         }
         self.sent: dict[str, float] = {}
-        self.period = PERIOD
+        self.period = self._shortest = PERIOD
 
     def slides(self, name: str) -> bool:
         """Whether it is there and can be made to slip with a torque."""
@@ -134,12 +134,14 @@ class Actuation:
             one.level, one.torque = float(closed), one.of.most if closed else 0.0
         self.outputs(0.0)
 
-    def outputs(self, passed: float) -> dict[str, float]:
+    def outputs(self, passed: float, *, shifting: bool = True) -> dict[str, float]:
         """Commands by signal, those that change alone; passed, time since the last call [s].
 
-        While it shifts it is called most often, so the shortest time between calls is that to the next one.
+        While it shifts it is called most often, so the shortest time between calls is that to the next one; at rest it
+        is the last one.
         """
-        self.period = min(self.period, passed) if passed > 0.0 else self.period
+        self._shortest = min(self._shortest, passed) if passed > 0.0 else self._shortest
+        self.period = self._shortest if shifting or passed == 0.0 else passed
         now = {self._signals[name]: self._output(name, passed) for name in self.commands}
         cones = (name for name in self.commands if self.kinds[name] == "synchroniser")
         now |= {f"{self.prefix}.{name}.forward_cone.normal_force": self.cone * self.commands[name] for name in cones}

@@ -135,7 +135,7 @@ class ShiftController:
         if self._halves and (self._course is None or self._course.state == "inertia"):
             self._preselect(self._halves, now)
         self._seen = (time, now.slips)
-        return self._do.outputs(period)
+        return self._do.outputs(period, shifting=self.shifting)
 
     @property
     def shifting(self) -> bool:
