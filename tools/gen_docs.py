@@ -11,7 +11,7 @@ import inspect
 import re
 import shutil
 import sys
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from pathlib import Path
 from typing import Any
 
@@ -125,6 +125,8 @@ def _example(kind: str, cls: type) -> str:
 
 def _points(value: Any, brackets: str) -> str:
     """A number, or pairs, numbers and rows of them in the brackets of the language."""
+    if isinstance(value, Mapping) and brackets == "[]":
+        return "{" + ", ".join(f"{name} = {text!r}" for name, text in value.items()) + "}"
     if not isinstance(value, tuple):
         return repr(value)
     pairs = all(isinstance(item, tuple) and len(item) == 2 for item in value)

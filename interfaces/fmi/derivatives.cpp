@@ -45,7 +45,7 @@ Answer Instance::turn(std::uint32_t known, double seed, Direction& into) const {
   if (one == nullptr) return refuse("there is no variable with the value reference " + std::to_string(known));
   if (!std::isfinite(seed)) return say(Answer::discard, Category::error, "a seed must be a finite number");
   if (one->kind == Kind::input) return into.value[known] += seed, Answer::ok;
-  if (one->kind == Kind::slope) return into.slopes[std::size_t(orders * one->of)] += seed, Answer::ok;
+  if (one->kind == Kind::slope) return into.slopes[std::size_t(orders * one->of + one->order - 1)] += seed, Answer::ok;
   for (const ContinuousState& state : model_.states)
     if (exchanges() && state.variable == std::int64_t(known))
       return into.x[std::size_t(state.number)] += seed, Answer::ok;

@@ -40,9 +40,15 @@ Instance* Instance::make(const std::string& path, const char* token, Listener li
   made->row_.resize(model.row.size());
   made->reset();
   std::int64_t states = 0, margins = 0;
-  if (made->put(made->now_.value)) cw_place_size(made->run(), &states, &margins);
+  const bool is_put = made->put(made->now_.value);
+  if (is_put) cw_place_size(made->run(), &states, &margins);
   made->rates_.resize(std::size_t(states)), made->margins_.resize(std::size_t(margins));
   made->now_.x.resize(std::size_t(states));
+  if (is_put && !model.has_places(states, margins)) {
+    made->refuse(damaged_resource);
+    delete made;
+    return nullptr;
+  }
   return made;
 }
 

@@ -103,6 +103,14 @@ bool is_joined(const Model& model) {
 
 }  // namespace
 
+bool Model::has_places(std::int64_t continuous, std::int64_t indicators) const {
+  for (const ContinuousState& one : states)
+    if (one.number >= continuous || one.variable >= std::int64_t(variables.size())) return false;
+  for (const Variable& one : variables)
+    if (one.kind == Kind::margin && (one.of < 0 || one.of >= indicators)) return false;
+  return true;
+}
+
 double Combination::operator()(const double* row) const {
   double sum = has_offset ? offset : 0.0;
   bool first = !has_offset;
@@ -140,14 +148,13 @@ std::string Model::load(const std::string& path) {
 }
 
 std::string Model::read(const std::vector<unsigned char>& bytes) {
-  const std::string damaged = "the resource of this FMU is damaged: export the model again";
-  if (bytes.size() < 16 || std::memcmp(bytes.data(), magic, sizeof magic) != 0) return damaged;
+  if (bytes.size() < 16 || std::memcmp(bytes.data(), magic, sizeof magic) != 0) return damaged_resource;
   Reader from(bytes.data() + sizeof magic, std::int64_t(bytes.size() - sizeof magic));
   if (from.integer(INT64_MIN, INT64_MAX) != cw_schema_hash())
     return "the library and the resource of this FMU are of different versions of clutchwork: export the model again";
   token = from.text();
   const std::int64_t sum = from.integer(INT64_MIN, INT64_MAX);
-  if (!from.whole() || sum != checksum(from.rest(), from.left())) return damaged;
+  if (!from.whole() || sum != checksum(from.rest(), from.left())) return damaged_resource;
   std::int64_t n = 0;
   const unsigned char* data = from.bytes(&n);
   system.assign(data, data + n);
@@ -174,7 +181,7 @@ std::string Model::read(const std::vector<unsigned char>& bytes) {
   for (ContinuousState& one : states)
     one.number = from.integer(0, many), one.nominal = from.number(), one.variable = from.integer(0, many);
   const bool fits = cw_size(system.data(), std::int64_t(system.size())) > 0 && std::int64_t(row.size()) == row_size;
-  return from.is_at_end() && fits && is_joined(*this) ? "" : damaged;
+  return from.is_at_end() && fits && is_joined(*this) ? "" : damaged_resource;
 }
 
 }  // namespace clutchwork::fmi

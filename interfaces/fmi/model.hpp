@@ -90,6 +90,9 @@ struct ContinuousState {
   std::int64_t variable;  ///< value reference
 };
 
+/// What is said of a resource with other contents than were exported.
+inline constexpr const char* damaged_resource = "the resource of this FMU is damaged: export the model again";
+
 struct Model {
   std::string token;
   std::vector<unsigned char> system;
@@ -110,6 +113,8 @@ struct Model {
 
   /// Read from a file; what is wrong with it, empty where nothing is.
   std::string load(const std::string& path);
+  /// Whether states and indicators are among those of the core.
+  bool has_places(std::int64_t continuous, std::int64_t indicators) const;
 
  private:
   std::string read(const std::vector<unsigned char>& bytes);

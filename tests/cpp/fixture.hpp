@@ -255,6 +255,7 @@ class Model {
                                   0,
                                   0,
                                   0,
+                                  0,
                                   count(input_first_),
                                   count(segment_time_),
                                   count(params_),

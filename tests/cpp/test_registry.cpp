@@ -126,6 +126,10 @@ constexpr int rates_of = [] {
   return 1;
 }();
 
+/// Whether a component reads oil, whose density and viscosity are above zero.
+template <class E>
+constexpr bool reads_oil = requires { E::Input::density; };
+
 /// Run `call(params, at, out)` over rates, states, pieces and parameter sets, one parameter at a time also zero.
 template <class E, class F>
 void over_arguments(F&& call, Fields fields, int inputs, int states, int outputs) {
@@ -156,7 +160,8 @@ void over_arguments(F&& call, Fields fields, int inputs, int states, int outputs
         for (int i = 1; i < ways; ++i) x[i] = (g.below(2) * 2 - 1) * g.between(1, 90);
         for (int i = ways; i < ways + states; ++i)
           x[i] = (g.below(2) * 2 - 1) * g.between(sizes[size][0], sizes[size][1]);
-        for (int i = ways + states; i < ways + states + inputs; ++i) x[i] = g.between(-2, longest + 2);
+        for (int i = ways + states; i < ways + states + inputs; ++i)
+          x[i] = g.between(reads_oil<E> ? 0.1 : -2, longest + 2);
         compare(-1);
         for (int zero = 0; zero < np && size == 0; ++zero) {
           if (!fields.fixed[zero]) compare(zero);

@@ -217,6 +217,7 @@ REFUSALS = {
     4: ("chatters", "its law jumps with the sign of the slip and never sticks"),
     5: ("many_speeds", f"the model has more than {MOST_FIXED_SPEEDS} independent speeds"),
     6: ("bristles", "its bristles or teeth move within any step"),
+    7: ("flows", "pressures of its oil change within any step"),
 }
 
 # what a run counts, in order: (name, meaning)

@@ -66,6 +66,8 @@ TABLE: dict[str, tuple[float, Powers]] = {
     "bar": (1e5, (1, -1, -2, 0, 0, 0)),
     "mbar": (1e2, (1, -1, -2, 0, 0, 0)),
     "psi": (6894.757293168361, (1, -1, -2, 0, 0, 0)),
+    "St": (1e-4, (0, 2, -1, 0, 0, 0)),
+    "cSt": (1e-6, (0, 2, -1, 0, 0, 0)),
     "K": (1.0, (0, 0, 0, 0, 1, 0)),
     "A": (1.0, (0, 0, 0, 0, 0, 1)),
     "mA": (1e-3, (0, 0, 0, 0, 0, 1)),
@@ -143,5 +145,6 @@ QUANTITIES = (
     UnitGroup("electric charge", "A s", ("6.5 Ah", "23400 A s")),
     UnitGroup("voltage", "V", ("200 V",)),
     UnitGroup("electrical resistance", "ohm", ("0.3 ohm", "300 mohm")),
+    UnitGroup("kinematic viscosity", "m2/s", ("30 mm2/s", "30 cSt")),
     UnitGroup("density", "kg/m3", ("7800 kg/m3", "7.8 t/m3")),
 )

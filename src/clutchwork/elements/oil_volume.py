@@ -21,8 +21,9 @@ class OilVolume(Component):
     """Oil in a line or behind a valve: its pressure follows the sum of all flows into it.
 
     Whatever has it as a port puts oil in and takes it out: pumps, orifices, valves, pistons; there may be any number of
-    them. `d pressure/dt = flow bulk_modulus/volume`; air that is carried along makes it soft at low pressures. A number
-    or a signal in place of a volume, as the port of a valve, is a pressure that nothing moves, such as that of a sump.
+    them. `d pressure/dt = flow bulk_modulus/volume`; air that is carried along makes it soft at low pressures, so that
+    none falls below vacuum. A number or a signal in place of a volume, as the port of a valve, is a fixed pressure,
+    such as that of a sump.
 
     Equations: docs/theory/hydraulics.md. Source: H. E. Merritt, Hydraulic Control Systems, Wiley 1967, section 1-4.
     """
@@ -33,7 +34,7 @@ class OilVolume(Component):
     bulk_modulus: float = param("Pa", "bulk modulus of the oil and of the walls", default=1.4e9, above=0.0)
     air: float = param("1", "share of air in the oil where it has no pressure", default=0.005, at_least=0.0, below=1.0)
     inflow: SignalLike = signal("m3/s", "a flow into it from outside", default=0.0)
-    initial_pressure: float = option("Pa", "pressure at the start", default=0.0)
+    initial_pressure: float = option("Pa", "pressure at the start", default=0.0, above=-101325.0)
 
     def initial_states(self) -> tuple[float, ...]:
         """Pressure at the start [Pa]; no work yet."""

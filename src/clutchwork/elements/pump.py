@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 
-from clutchwork.declare import Component, Node, Rate, Role, SignalLike, component, param, port, signal
-from clutchwork.elements.bases.oil import DENSITY, VISCOSITY
+from clutchwork.declare import Component, Found, Node, Rate, Role, SignalLike, component, param, port, signal
+from clutchwork.elements.bases.oil import DENSITY, VISCOSITY, same_ports
 from clutchwork.elements.pump_flow import PumpFlow
 from clutchwork.elements.pump_torque import PumpTorque
 
@@ -34,6 +34,10 @@ class Pump(Component):
     inlet: SignalLike = signal("Pa", "pressure that it takes oil from", default=0.0)
     density: SignalLike = signal("kg/m3", "density of the oil", default=DENSITY, above=0.0)
     viscosity: SignalLike = signal("m2/s", "kinematic viscosity of the oil", default=VISCOSITY, above=0.0)
+
+    def problems(self) -> Found:
+        """One volume before and behind it."""
+        return same_ports(self)
 
     def parts(self) -> Iterable[Component]:
         """The torque on the shaft, and the oil."""

@@ -34,7 +34,7 @@ class ReliefValve(Opening):
     span: float = param("Pa", "pressure above its setting at which it is open", default=1e5, above=0.0)
     area: float = param("m2", "area of the open valve", above=0.0, example=4e-5)
     lag: float = param("s", "time constant with which the setting follows its command", default=0.01, above=0.0)
-    clearance: float = param("1", "share of the stroke that its clearance is worth", default=CLEARANCE, above=0.0)
+    clearance: float = param("1", "clearance as a share of the stroke", default=CLEARANCE, above=0.0)
     initial_setting: float | None = option(
         "Pa", "setting at the start, that of the command by default", default=None, at_least=0.0
     )

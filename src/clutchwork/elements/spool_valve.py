@@ -34,13 +34,13 @@ class SpoolValve(Opening):
     clutch: SignalLike = signal("Pa", "pressure of the clutch: a volume", draws=True, example=2e5)
     exhaust: SignalLike = signal("Pa", "pressure that the clutch empties to", default=0.0, draws=True)
     command: SignalLike = signal("Pa", "wanted pilot pressure", example=5e5)
-    supply_area: float = param("m2", "area to the supply at the end of the way", above=0.0, example=1e-5)
-    exhaust_area: float = param("m2", "area to the exhaust at the other end", above=0.0, example=1e-5)
+    supply_area: float = param("m2", "area to the supply at full travel", above=0.0, example=1e-5)
+    exhaust_area: float = param("m2", "area to the exhaust at full travel the other way", above=0.0, example=1e-5)
     span: float = param("Pa", "pilot pressure that moves it from the middle to an end", default=1e5, above=0.0)
     spring: float = param("Pa", "pilot pressure that balances its spring in the middle", default=0.0)
     feedback: float = param("1", "share of the pressure of the clutch that pushes it back", default=1.0, at_least=0.0)
-    overlap: float = param("1", "share of the way that opens nothing", default=0.05, at_least=0.0, at_most=0.9)
-    clearance: float = param("1", "share of the way that its clearance is worth", default=CLEARANCE, above=0.0)
+    overlap: float = param("1", "share of the travel that opens nothing", default=0.05, at_least=0.0, at_most=0.9)
+    clearance: float = param("1", "clearance as a share of the travel", default=CLEARANCE, above=0.0)
     lag: float = param("s", "time constant with which the pilot pressure follows its command", default=0.01, above=0.0)
     initial_pilot: float | None = option(
         "Pa", "pilot pressure at the start, that of the command by default", default=None

@@ -21,7 +21,7 @@ from clutchwork.elements.bases.oil import DENSITY, VISCOSITY
 from clutchwork.elements.clutch_actuator import ClutchActuator
 from clutchwork.elements.oil_volume import OilVolume
 from clutchwork.elements.pump import Pump
-from clutchwork.elements.relief_valve import ReliefValve
+from clutchwork.elements.relief_valve import ReliefValve, command_at_start
 from clutchwork.elements.spool_valve import SpoolValve
 
 
@@ -35,7 +35,9 @@ class ValveBody(Component):
     line is `body.line`, which `body.regulator` keeps at `line_pressure` as long as the pump delivers what pistons and
     leaks take. Shift controllers command `body.A_valve.command`, and find valve and piston by themselves.
 
-    What elements have in common is given once; a `Pump`, `SpoolValve` and `ClutchActuator` of one's own make any other.
+    What elements have in common is given once; build anything else from a `Pump`, `SpoolValve` and `ClutchActuator`.
+    The bore before a piston is turbulent at a fixed density: filling times do not follow the temperature of the oil,
+    only valves, pump and leakage do.
     """
 
     shaft: Node = port("shaft that drives the pump")
@@ -56,7 +58,7 @@ class ValveBody(Component):
     valve_area: float = param("m2", "area of an open spool valve", default=4e-5, above=0.0)
     valve_span: float = param("Pa", "pilot pressure that moves a spool to its end", default=2e4, above=0.0)
     transition: float = param(
-        "1", "number of Reynolds at which the flow in its passages becomes turbulent", default=260.0, above=0.0
+        "1", "the flow in its spool valves becomes turbulent at this Reynolds number", default=260.0, above=0.0
     )
     overlap: float = param(
         "1", "share of the way of a spool that opens nothing", default=0.02, at_least=0.0, at_most=0.9
@@ -82,7 +84,7 @@ class ValveBody(Component):
     def parts(self) -> Iterable[Component]:
         """Line, pump and regulator, and of each element valve, oil and piston."""
         oil: dict[str, Any] = {"density": self.density, "viscosity": self.viscosity}
-        start = float(self.line_pressure) if isinstance(self.line_pressure, int | float) else 0.0
+        start = command_at_start(self.line_pressure)
         line = OilVolume(f"{self.name}.line", volume=self.line_volume, initial_pressure=start)
         yield line
         pump: dict[str, Any] = {"displacement": self.displacement, "efficiency": self.efficiency, "drag": self.drag}

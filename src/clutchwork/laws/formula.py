@@ -41,7 +41,7 @@ class Formula(FormulaLaw):
 def _negative(program: Program, registers: list[float], at: dict[str, float]) -> Found:
     """A coefficient that drives."""
     kinetic = registers[program.coefficient]
-    if kinetic >= 0.0:
+    if kinetic >= -ROUND_OFF:
         return []
     fault = f"is {kinetic:g} {where(program, at)}: below zero friction drives"
     return [("expression", fault, "keep it above: max(0, ...)")]

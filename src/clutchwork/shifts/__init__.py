@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+from typing import Any
+
+from clutchwork.base.errors import near
 from clutchwork.shifts.actuators import ElementActuator, Learnt
 from clutchwork.shifts.comfort import jerk, vibration_dose
 from clutchwork.shifts.controller import ShiftController
@@ -68,3 +71,18 @@ __all__ = [
     "table",
     "vibration_dose",
 ]
+
+# names of clones before 0.1.0, and what took their place
+MOVED = {
+    "DualClutch": "ShiftController, which shifts dual-clutch gearboxes too",
+    "DualClutchSettings": "ShiftSettings",
+    "DualClutchShift": "ShiftRecord",
+    "ShiftSchedule": "ShiftMap.two_lines",
+    "drive_dual_clutch": "drive, with sources",
+}
+
+
+def __getattr__(name: str) -> Any:
+    if name in MOVED:
+        raise AttributeError(f"cw.shifts.{name} is gone: use cw.shifts.{MOVED[name]}")
+    raise AttributeError(f"clutchwork.shifts has no {name!r}{near(name, __all__)}")

@@ -111,6 +111,8 @@ def drive(
     """
     share, sensed = TorqueShare(sources), sensed or Sensed()
     asks = control.asks or ("" if control.always or sensed.torque else "nothing says the torque at the input")
+    if control.always and sources:
+        raise UseError("cw.shifts.drive", ["this controller commands engine and machines itself: leave sources out"])
     if asks and not sources:
         raise UseError("cw.shifts.drive", [f"{asks}: give sources, such as cw.shifts.EngineSource.of(engine)"])
     read, set_, last = _SensorReader(sensed, sim, control, share), dict[str, float](), sim.time

@@ -97,7 +97,11 @@ class ShiftMap:
 
         Parameters: up and down, speeds of the input [rad/s] over the pedal. ModelError where gears hunt.
         """
-        used = {gear: ratio for gear, ratio in _forward(box).items() if not gears or gear in gears}
+        forward = _forward(box)
+        unknown = [gear for gear in gears if gear not in forward]
+        if unknown:
+            raise UseError("ShiftMap.two_lines", [f"{box.name} has no forward gear {quote(gear)}" for gear in unknown])
+        used = {gear: ratio for gear, ratio in forward.items() if not gears or gear in gears}
         lines = {way: line for pair in pairwise(used) for way, line in ((pair, up), (pair[::-1], down))}
         return cls(used, lines, INPUT, skips=skips)
 
@@ -156,7 +160,13 @@ class ShiftMap:
         if self.of == VEHICLE and not self.per_output:
             remedy = "give per_output, speed of the vehicle per speed of the output [m]"
             yield Problem("shift map", "per_output", "is missing for lines of the vehicle", remedy=remedy)
+        if not -1.0 < self.gap < 1.0:
+            yield Problem("shift map", "gap", f"is {self.gap:g}", remedy="give a share of the speed up, such as 0.01")
+        if self.per_output is not None and not 0.0 < self.per_output < inf:
+            remedy = "give the speed of the vehicle per speed of the output [m], above 0"
+            yield Problem("shift map", "per_output", f"is {self.per_output:g}", remedy=remedy)
         yield from self._wrong()
+        yield from self._unused()
         for lower, higher in pairwise(self.ratios):
             for pair in ((lower, higher), (higher, lower)):
                 if pair not in self.lines or len(self.lines[pair]) == 0:
@@ -170,9 +180,27 @@ class ShiftMap:
             if pair not in known:
                 yield Problem(name, "", "is not between two gears that follow each other", remedy="leave it out")
             if not all(0.0 <= pedal <= 1.0 and isfinite(speed) and speed >= 0.0 for pedal, speed in line):
-                yield Problem(name, "", "has a point that is none", remedy="give pedals from 0 to 1 and speeds from 0")
+                yield Problem(name, "", "has an invalid point", remedy="give pedals from 0 to 1 and speeds from 0")
             if sorted(set(pedals)) != pedals:
                 yield Problem(name, "", "has pedals that do not rise", remedy="give each pedal once, in rising order")
+
+    def _unused(self) -> Iterator[Problem]:
+        """Kickdown and inhibits that would never act."""
+        if (self.kickdown <= 1.0) != bool(self.kickdown_speeds):
+            remedy = "give both `kickdown` and `kickdown_speeds`, or neither"
+            yield Problem(
+                "shift map", "kickdown", "has a pedal without speeds, or speeds without a pedal", remedy=remedy
+            )
+        for pair in self.kickdown_speeds.keys() - self.lines.keys():
+            remedy = "give pairs of gears that follow each other"
+            yield Problem(f"shift {'-'.join(pair)}", "kickdown_speeds", "has no line", remedy=remedy)
+        for one in self.inhibits:
+            gears = (one.gears,) if isinstance(one.gears, str) else one.gears
+            for gear in gears:
+                if isinstance(one.gears, str) or gear not in self.ratios:
+                    known = ", ".join(self.ratios)
+                    fault = f"has {quote(gear)}, which is not a tuple of gears of the map"
+                    yield Problem("shift map", "inhibits", fault, remedy=f"choose from {known}")
 
     def _hunting(self) -> Iterator[Problem]:
         """No line back above a line up, (23) of docs/theory/shifts.md, and no line up above that of the next gear.

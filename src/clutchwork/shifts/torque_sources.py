@@ -98,7 +98,7 @@ class EngineSource:
     def demand(self, pedal: float, speed: float) -> float:
         """What it gives at a throttle [N m]."""
         low, high = self.limits(speed)
-        return low + pedal * (high - low)
+        return low + min(1.0, max(0.0, pedal)) * (high - low)
 
     def limits(self, speed: float) -> tuple[float, float]:
         """What it gives at closed and at full throttle [N m]."""

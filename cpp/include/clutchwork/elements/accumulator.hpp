@@ -22,6 +22,8 @@ struct Accumulator : declared::Accumulator {
   static void state_rates(const Params<T>& p, const At<S>& at, S* rates) {
     const S now = T(bar) * at.state[pressure], flow = at.input[Input::gathered] + at.input[Input::inflow];
     S softness = S(p.volume / p.bulk_modulus);
+    // with some air in an empty one, as in an `OilVolume`, no pressure falls below vacuum
+    if (at.piece == empty) softness += p.volume * T(air * ambient) / ((now + T(ambient)) * (now + T(ambient)));
     if (at.piece == charging && p.against == choice::Against::spring) softness += S(T(1) / p.rate);
     if (at.piece == charging && p.against == choice::Against::gas) {
       const S absolute = now + T(ambient),
@@ -50,6 +52,7 @@ struct Accumulator : declared::Accumulator {
   }
 
   static constexpr double ambient = 101325;  ///< [Pa]
+  static constexpr double air = 0.005;       ///< share of the oil
 };
 
 }  // namespace clutchwork::elements

@@ -129,7 +129,7 @@ void gather(const Workspace<T>& ws, const S* state, S* input) {
       using E = typename decltype(tag)::type;
       if constexpr (DrawingProcess<E>) {
         const auto& p = *reinterpret_cast<const typename E::template Params<T>*>(ws.params + sys.process_param[c]);
-        S flow[E::inputs];
+        S flow[E::inputs]{};
         E::drawn(p, process_at<T, S>(ws, c, state + sys.process_state[c], input + sys.process_input[c]), flow);
         for (; j < sys.draws && sys.draw_process[j] == c; ++j)
           input[sys.process_input[sys.draw_from[j]]] -= flow[sys.draw_input[j]];

@@ -268,9 +268,9 @@ class Reader:
         if name in self.unread:
             return self._mistake(f"reads {source}, which has no meaning at rest", f"write it without {name}")
         if name not in self.graph.names:
-            known = [*self.graph.names, *FUNCTIONS]
-            meant = near(name, known)
-            remedy = "" if meant else f"give it a value: {name}=0.3; known names: {', '.join(self.graph.names)}"
+            # a short name is not a misspelt input of one letter
+            meant = near(name, [known for known in self.graph.names if len(known) > 1])
+            remedy = f"{'or ' if meant else ''}give it a value: {name}=0.3; known names: {', '.join(self.graph.names)}"
             return self._mistake(f"has the unknown name {source}{meant}", remedy)
         self.graph.read.add(name)
         return self.graph.add(FormulaNode("name", name=name), source)

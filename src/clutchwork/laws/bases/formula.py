@@ -31,8 +31,10 @@ Found = list[tuple[str, str, str]]
 # names that mean something else where a law stands
 TAKEN = {*INPUTS, *FUNCTIONS, "type", "unit", "name", "e", "pi"}
 NAME = re.compile(r"[A-Za-z][A-Za-z0-9_]*")
-# slips [rad/s], temperatures [K] and pressures [Pa] at which a formula is looked at
-SLIPS = (0.0, 1e-3, 1e-2, 0.1, 0.3, 1.0, 3.0, 10.0, 30.0, 100.0, 300.0)
+# slips [rad/s], temperatures [K] and pressures [Pa] at which a formula is looked at: in equal steps, and closer to rest
+SLIPS = tuple(
+    sorted({0.0, 1e-3, 1e-2, 0.03, 0.1, 0.3, *(0.5 * k for k in range(1, 61)), *(2.0 * k for k in range(15, 151))})
+)
 TEMPERATURES = (250.0, 300.0, 400.0, 500.0)
 PRESSURES = (1e4, 1e5, 1e6, 5e6)
 ROUND_OFF = 1e-12
@@ -120,7 +122,7 @@ class FormulaLaw(Law):
 
     def advice(self) -> Found:
         spare = [name for name in INPUTS[1:] if getattr(self, name) is not None and not self.reads(name)]
-        return [(name, "is in no expression", "take it away, or write it into one") for name in spare]
+        return [(name, "is in no expression", "remove it, or use it in an expression") for name in spare]
 
     def values(self) -> dict[str, float]:
         """Its numbers by name."""
@@ -167,7 +169,7 @@ def _unread(law: FormulaLaw, program: Program) -> Found:
     """Numbers that stand in no expression, and a pressure that is read and not given."""
     names = [one.name for one in type(law).numbers]
     found = [
-        (name, "is in no expression", "take it away, or write it into one")
+        (name, "is in no expression", "remove it, or use it in an expression")
         for name in names
         if name not in program.reads
     ]

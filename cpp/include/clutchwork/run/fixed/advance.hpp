@@ -113,10 +113,9 @@ Status advance_fixed(Workspace<T>& ws, double t_end, Sink& sink, bool to_event) 
   const int waiting = ws.events.n;
   Status status = fixed::make_ready(ws, sink);
   if (status == Status::running) status = fixed::emit_present(ws, sink);
-  while (status == Status::running && ws.time < t_end) {
+  while (status == Status::running && ws.time < t_end && !(to_event && ws.events.n > waiting)) {
     status = fixed::what_is_spent(ws, sink);
     if (status == Status::running) status = fixed::take_step(ws, t_end, sink);
-    if (to_event && ws.events.n > waiting) break;
   }
   // whatever else goes on from here begins a phase
   if (ws.started) ws.fresh_phase = true, inputs_at(ws, ws.time), shared_inputs(ws, ws.state);

@@ -59,6 +59,7 @@ inline bool takes(Run& ws) {
     ws.detail.component = component, ws.detail.value = double(int(why));
     return false;
   };
+  if (with_draws && sys.draws > 0) return refuse(-1, Refusal::flows);
   for (int d = 0; d < ws.n_directions; ++d) {
     const Refusal why = refusal_of(ws, d);
     if (why != Refusal::taken) return refuse(d, why);

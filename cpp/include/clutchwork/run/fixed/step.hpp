@@ -90,13 +90,13 @@ inline void move_freely(Run& ws, double h) {
 
 /// Speeds without inertia follow torques at once, of which a step knows those in its middle: they go on from the
 /// middles of two steps, and rates with them. docs/theory/fixed-steps.md, rule 5
-inline void settle_massless(Run& ws) {
+inline void settle_massless(Run& ws, double h) {
   const System& sys = ws.sys;
   Fixed<double>& f = ws.fixed;
   for (int i = 0; i < sys.speeds; ++i) {
     if (sys.massless[i] == 0) continue;
     const double middle = 0.5 * f.change[i], last = -0.5 * f.gain[i];
-    f.change[i] = middle + 0.5 * (middle - last);
+    f.change[i] = middle + h / (h + f.before) * (middle - last);
   }
   for (int d = 0; d < ws.n_directions; ++d) {
     if (f.massless[d] == 0) continue;
@@ -119,7 +119,7 @@ inline void move(Run& ws, double h) {
   end_states(ws);
   if (sys.shared > 0) change_shared(ws, h);
   // the first step has no middle before its own
-  if (f.has_massless && f.before > 0) settle_massless(ws);
+  if (f.has_massless && f.before > 0) settle_massless(ws, h);
 }
 
 /// Contacts that only join prescribed shafts: their torque moves nothing. False: a freewheel is turned backward.
