@@ -2,12 +2,15 @@
 
 from __future__ import annotations
 
+from math import isclose
 from typing import ClassVar
 
 from clutchwork.declare import Component, Found, Role, SignalLike, State, choice, component, option, param, signal
 from clutchwork.elements.oil_volume import BAR
 
 AMBIENT = 101325.0  # Pa
+# of a gas [1], and of a spring [Pa/m3], where nothing is given
+EXPONENT, RATE = 1.2, 5e9
 
 
 @component(
@@ -33,8 +36,8 @@ class Accumulator(Component):
     against: str = choice("what presses the oil", choices=("gas", "spring"), default="gas")
     precharge: float = param("Pa", "pressure at which oil begins to enter", above=0.0, example=5e5)
     capacity: float = param("m3", "volume of the gas there; of a spring the oil that fills it", above=0.0, example=2e-4)
-    exponent: float = param("1", "of a gas: its exponent, 1 slow, 1.4 fast", default=1.2, at_least=1.0)
-    rate: float = param("Pa/m3", "of a spring: pressure per volume", default=5e9, above=0.0)
+    exponent: float = param("1", "of a gas: its exponent, 1 slow, 1.4 fast", default=EXPONENT, at_least=1.0)
+    rate: float = param("Pa/m3", "of a spring: pressure per volume", default=RATE, above=0.0)
     volume: float = param("m3", "oil that is there always", default=2e-5, above=0.0)
     bulk_modulus: float = param("Pa", "bulk modulus of the oil", default=1.4e9, above=0.0)
     inflow: SignalLike = signal("m3/s", "a flow into it from outside", default=0.0)
@@ -43,7 +46,9 @@ class Accumulator(Component):
     def problems(self) -> Found:
         """A number of the other kind, which would be ignored."""
         other = {"gas": "rate", "spring": "exponent"}.get(self.against)
-        if other is None or getattr(self, other) == type(self).__dataclass_fields__[other].default:
+        # a default that was written in another unit is off by round-off
+        usual = {"rate": RATE, "exponent": EXPONENT}
+        if other is None or isclose(getattr(self, other), usual[other], rel_tol=1e-9):
             return []
         return [(other, f"has no meaning against a {self.against}", "leave it out")]
 
