@@ -36,6 +36,17 @@ def crank(d: cw.Driveline) -> tuple[cw.Node, cw.Engine]:
     return shaft, engine
 
 
+def driven(d: cw.Driveline, box: cw.Gearbox, engine: cw.Engine) -> tuple[cw.Trajectory, list[cw.shifts.ShiftRecord]]:
+    """The cycle of a box that an engine drives, under the controller that there is."""
+    system = d.assemble()
+    schedule = cw.shifts.ShiftMap.two_lines(box, UP, DOWN)
+    settings = cw.shifts.ShiftSettings(launch_speed=150.0)
+    control = cw.shifts.ShiftController(box, cw.shifts.plant_of(system, box), schedule=schedule, settings=settings)
+    sources = [cw.shifts.EngineSource.of(engine)]
+    run = cw.shifts.drive(cw.Simulator(system), control, 64.0, throttle="driver.throttle", sources=sources)
+    return run, control.records
+
+
 def automatic() -> tuple[cw.Trajectory, list[cw.shifts.ShiftRecord]]:
     """Four speeds after Simpson: two sets with one sun."""
     sets = {
@@ -51,13 +62,7 @@ def automatic() -> tuple[cw.Trajectory, list[cw.shifts.ShiftRecord]]:
     out = d.shaft("out", inertia=0.02)
     d.add(cw.Transmission("gearbox", gearbox=box, input=shaft, output=out, inertia=0.005, torque=300.0))
     car(d, out, 3.8)
-    system = d.assemble()
-    schedule = cw.shifts.ShiftMap.two_lines(box, UP, DOWN)
-    settings = cw.shifts.ShiftSettings(launch_speed=150.0)
-    control = cw.shifts.ShiftController(box, cw.shifts.plant_of(system, box), schedule=schedule, settings=settings)
-    sources = [cw.shifts.EngineSource.of(engine)]
-    run = cw.shifts.drive(cw.Simulator(system), control, 64.0, throttle="driver.throttle", sources=sources)
-    return run, control.records
+    return driven(d, box, engine)
 
 
 def dual_clutch() -> tuple[cw.Trajectory, list[cw.shifts.ShiftRecord]]:
@@ -79,13 +84,7 @@ def dual_clutch() -> tuple[cw.Trajectory, list[cw.shifts.ShiftRecord]]:
     out = d.shaft("out", inertia=0.02)
     d.add(cw.Transmission("gearbox", gearbox=box, input=shaft, output=out, inertia=0.003, torque=300.0))
     car(d, out, 1.0)
-    system = d.assemble()
-    schedule = cw.shifts.ShiftMap.two_lines(box, UP, DOWN)
-    settings = cw.shifts.ShiftSettings(launch_speed=150.0)
-    control = cw.shifts.ShiftController(box, cw.shifts.plant_of(system, box), schedule=schedule, settings=settings)
-    sources = [cw.shifts.EngineSource.of(engine)]
-    run = cw.shifts.drive(cw.Simulator(system), control, 64.0, throttle="driver.throttle", sources=sources)
-    return run, control.records
+    return driven(d, box, engine)
 
 
 def power_split() -> tuple[cw.Trajectory, list[cw.shifts.ShiftRecord]]:

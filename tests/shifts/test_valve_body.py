@@ -2,12 +2,11 @@
 
 from __future__ import annotations
 
-import numpy as np
 import pytest
 
 import clutchwork as cw
-from support.eight_speed_shifts import BOX, qualities, shift, speed
-from support.shift_car import SENSED, car, with_valve_body
+from support.eight_speed_shifts import BOX, felt, qualities, shift, speed
+from support.shift_car import car, with_valve_body
 
 # single and double changes, long and short steps; all of them: examples/valve_body/valve_body.py --all
 PAIRS = [("1", "2"), ("3", "4"), ("4", "3"), ("5", "2"), ("2", "5"), ("8", "7"), ("4", "6"), ("7", "3")]
@@ -31,26 +30,11 @@ def test_a_fill_test_goes_along_the_ports() -> None:
 
 def test_shifts_through_a_valve_body() -> None:
     """Each gear is reached, with power and without; jerk and hole are those of direct pressure within 20 %."""
-    jerks, holes = dict[bool, list[float]](), dict[bool, list[float]]()
-    for direct in (True, False):
-        jerks[direct], holes[direct] = [], []
-        for pair in PAIRS:
-            begin, model = speed(*pair), car if direct else with_valve_body
-            found = cw.shifts.survey(
-                lambda gear, one=begin, two=model: two(BOX, gear, one),
-                BOX,
-                [pair],
-                sensed=SENSED,
-                torque="half_shafts.torque",
-                acceleration="car.acceleration",
-                rtol=1e-6,
-            )
-            assert not found.missed, str(found)
-            jerks[direct] += [one.quality.peak_jerk for one in found.results if one.quality]
-            holes[direct] += [one.quality.torque_hole for one in found.results if one.quality]
-    assert len(jerks[False]) == 2 * len(PAIRS)
-    assert np.mean(jerks[False]) < 1.2 * np.mean(jerks[True])
-    assert np.mean(holes[False]) < 1.2 * np.mean(holes[True])
+    _, jerk, hole = felt(lambda gear, at: car(BOX, gear, at), PAIRS)
+    count, with_oil, hole_with_oil = felt(lambda gear, at: with_valve_body(BOX, gear, at), PAIRS)
+    assert count == 2 * len(PAIRS)
+    assert with_oil < 1.2 * jerk
+    assert hole_with_oil < 1.2 * hole
 
 
 @pytest.mark.parametrize("fill", [0.7, 1.3])

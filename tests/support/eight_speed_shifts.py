@@ -2,6 +2,10 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable, Iterable
+
+import numpy as np
+
 import clutchwork as cw
 from support.shift_car import SENSED
 
@@ -27,3 +31,26 @@ def shift(
 
 def qualities(run: cw.Trajectory) -> list[cw.shifts.ShiftQuality]:
     return cw.shifts.qualities(run, BOX, torque="half_shafts.torque", acceleration="car.acceleration")
+
+
+def felt(made: Callable[[str, float], cw.Driveline], pairs: Iterable[tuple[str, str]]) -> tuple[int, float, float]:
+    """Shifts, mean of their largest jerk [m/s3], and of their torque hole [N m]; each of them reaches its gear.
+
+    Parameters: made, the car in a gear with a speed of the input [rad/s].
+    """
+    found = list[cw.shifts.ShiftQuality]()
+    for pair in pairs:
+        begin = speed(*pair)
+        one = cw.shifts.survey(
+            lambda gear, at=begin: made(gear, at),
+            BOX,
+            [pair],
+            sensed=SENSED,
+            torque="half_shafts.torque",
+            acceleration="car.acceleration",
+            rtol=1e-6,
+        )
+        assert not one.missed, str(one)
+        found += [result.quality for result in one.results if result.quality]
+    jerk = float(np.mean([quality.peak_jerk for quality in found]))
+    return len(found), jerk, float(np.mean([quality.torque_hole for quality in found]))
