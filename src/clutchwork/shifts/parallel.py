@@ -337,12 +337,12 @@ class ParallelSequence:
         self._output = Trend(now.output_speed)
         change = -float(one.input @ self._start)
         time, longer = max(with_.inertia_time, 1e-9), abs(change) / max(with_.usual_step, 1e-9)
-        # what the torque of the input itself brings there, or a pull of the elements that close up to a limit
-        at_hand = AT_HAND * max(0.0, copysign(now.input_torque, change * now.input_torque))
-        at_hand = max(at_hand, with_.pull if change > 0.0 else 0.0)
-        if at_hand > 0.0 and change:
+        if change:
+            # what the torque of the input itself brings there, with what is behind it, or a pull of the elements
             kinetic = float(self._start @ one.inertia @ self._start) / abs(change)
-            longer = max(longer, 1.5 * kinetic / at_hand / time)
+            own = (kinetic + self.do.plant.behind * abs(change)) / max(AT_HAND * now.input_torque * copysign(1.0, change), 1e-9)
+            pulled = kinetic / max(with_.pull if change > 0.0 else 0.0, 1e-9)
+            longer = max(longer, 1.5 * min(own, pulled) / time)
         self._time = time * min(max(1.0, longer), max(1.0, with_.stretch))
 
     def _needed(self, period: float, now: Measured) -> dict[str, float]:
