@@ -27,6 +27,7 @@ class ActuatorDriver:
     fill_time: float  # s, as it was learnt
     kiss: float  # command at which it touches, as it was learnt
     level: float = 0.0  # of the filling, 0 to 1
+    grips: bool = True  # whether it carried something since it was filled, so that nothing is left of the filling
     torque: float = 0.0  # N m, as it should be at present
     _fills: float = 0.0  # rate of the filling that was commanded, over that of the full command
     _asked: float = 0.0  # N m, the torque that was
@@ -40,12 +41,14 @@ class ActuatorDriver:
         self._pass(passed)
         self._fills, self._asked = 0.0, 0.0
         if open_:
-            self._fills = -1.0 / DRAIN
+            self._fills, self.grips = -1.0 / DRAIN, False
             return of.commands[0]
         if self.level < 1.0 - FULL:
             return self._fill(period)
         self._asked = self._lead(torque, period)
-        return self.at(max(TOUCH * of.most, self._asked))
+        least = TOUCH * of.most
+        self.grips |= self.torque > 2.0 * least
+        return self.at(self._asked if self.grips else max(least, self._asked))
 
     def at(self, torque: float) -> float:
         """Command at which it carries a torque [N m] in the long run: that of the table, moved with the kiss point."""
@@ -70,5 +73,5 @@ class ActuatorDriver:
         lag = self.of.lag
         if lag <= NO_LAG * period:
             return wanted
-        asked = self.torque + (wanted - self.torque) / (1.0 - exp(-max(period, 0.5 * lag) / lag))
+        asked = self.torque + (wanted - self.torque) / (1.0 - exp(-max(period, 3.0 * lag) / lag))
         return min(self.of.most, max(0.0, asked))

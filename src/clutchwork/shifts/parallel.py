@@ -131,12 +131,14 @@ class ParallelSequence:
             # nothing holds the input meanwhile
             return "inertia"
         share = 1.0 if self.filled else share_of(passed, self._fill_time)
+        # what lags is down in time
+        down = max(share, share_of(passed, self._fill_time - do.settling(one.off)))
         self._watch_fill(now)
         for name in one.on:
             do.carry(name, 0.0, with_)
         for name in one.off:
             held = do.pressure(name, with_.margin * abs(one.off_torques[name] * now.input_torque), with_)
-            do.commands[name] = min(self._held[name], held + (1.0 - share) * (self._held[name] - held))
+            do.commands[name] = min(self._held[name], held + (1.0 - down) * (self._held[name] - held))
         if share < 1.0:
             return ""
         taken = self._still(now)
@@ -171,9 +173,7 @@ class ParallelSequence:
     def _runs_away(self, now: Measured) -> bool:
         """Whether an element that opens slips away from the new gear: too little holds the input."""
         slips = ((now.slips[name], self.one.offsets[name] * now.output_speed) for name in self.one.off)
-        return len(self.one.off) == 1 and any(
-            slip * ahead < 0.0 and abs(slip) > self.with_.sync_slip for slip, ahead in slips
-        )
+        return any(slip * ahead < 0.0 and abs(slip) > self.with_.sync_slip for slip, ahead in slips)
 
     def inertia(self, passed: float, period: float, now: Measured) -> str:
         """All slips along their profiles at once, by those elements that pull the right way: equations (15), (16)."""
@@ -337,12 +337,14 @@ class ParallelSequence:
         self._output = Trend(now.output_speed)
         change = -float(one.input @ self._start)
         time, longer = max(with_.inertia_time, 1e-9), abs(change) / max(with_.usual_step, 1e-9)
-        if change:
-            # what the torque of the input itself brings there, with what is behind it, or a pull of the elements
+        # what the torque of the input itself brings there, or a pull of the elements that close up to a limit
+        own, pull = AT_HAND * max(0.0, copysign(now.input_torque, change * now.input_torque)), with_.pull
+        at_hand = max(own, pull if change > 0.0 else 0.0)
+        if at_hand > 0.0 and change:
             kinetic = float(self._start @ one.inertia @ self._start) / abs(change)
-            own = (kinetic + self.do.plant.behind * abs(change)) / max(AT_HAND * now.input_torque * copysign(1.0, change), 1e-9)
-            pulled = kinetic / max(with_.pull if change > 0.0 else 0.0, 1e-9)
-            longer = max(longer, 1.5 * min(own, pulled) / time)
+            # its own torque speeds up an engine behind a converter too
+            kinetic += min(1.0, own / pull) * self.do.plant.behind * abs(change)
+            longer = max(longer, 1.5 * kinetic / at_hand / time)
         self._time = time * min(max(1.0, longer), max(1.0, with_.stretch))
 
     def _needed(self, period: float, now: Measured) -> dict[str, float]:
