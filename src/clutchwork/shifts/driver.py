@@ -73,5 +73,5 @@ class ActuatorDriver:
         lag = self.of.lag
         if lag <= NO_LAG * period:
             return wanted
-        asked = self.torque + (wanted - self.torque) / (1.0 - exp(-max(period, 3.0 * lag) / lag))
+        asked = self.torque + (wanted - self.torque) / (1.0 - exp(-max(period, lag) / lag))
         return min(self.of.most, max(0.0, asked))

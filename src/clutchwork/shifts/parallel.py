@@ -31,8 +31,10 @@ ASTRAY = 20.0
 LAST = 3.0
 # second difference of the speed of the output from which on it is a jolt of a piston [rad/s]
 JOLT = 0.25
+# the same in the torque phase, where an element grips late [rad/s], and when it should grip at the latest [s]
+GRIPS, SOON = 0.06, 0.02
 # for which the torque phase may wait without a reason [s]
-USUAL = 0.015
+USUAL = 0.005
 # share of the inertia phase in which the torque of the engine comes back
 COMES_BACK = 0.4
 # torque that is lacking at the input of a downshift [N m], from which on all of `blip` is asked for
@@ -87,6 +89,7 @@ class ParallelSequence:
     takes: tuple[str, ...] = ()  # those that took the torque over
     missed: dict[str, Missed] = field(default_factory=dict)  # of those that carried in the inertia phase
     _outputs: tuple[float, ...] = ()  # rad/s
+    _kinks: list[tuple[float, float]] = field(default_factory=list)  # s, rad/s: of the output in the torque phase
     _held: dict[str, float] = field(default_factory=dict)  # Pa, of what opens, at the beginning
     _start: Array = field(default_factory=lambda: np.zeros(0))  # y where the inertia phase begins [rad/s]
     _speed: Array = field(default_factory=lambda: np.zeros(0))  # the same of its rate [rad/s2]
@@ -159,6 +162,7 @@ class ParallelSequence:
                 do.carry(name, with_.margin**2 * abs(one.off_torques[name] * now.input_torque), with_)
             if passed < with_.longest:
                 return ""
+        self._kinks += [(passed, self._kink(now))]
         share, taken = share_of(passed - self.late, with_.torque_time), self._still(now)
         for name in one.on:
             do.carry(name, share * taken[name], with_)
@@ -168,6 +172,11 @@ class ParallelSequence:
             do.carry(name, abs(before + after), with_)
         if share < 1.0 and all(abs(now.slips[name]) <= with_.sync_slip for name in one.off):
             return ""
+        size = max(kink for _, kink in self._kinks)
+        if size > GRIPS:
+            # the output shows where they grip
+            grips = next(at for at, kink in self._kinks if kink > 0.5 * size)
+            self.late = max(self.late, grips - SOON)
         return "inertia"
 
     def _runs_away(self, now: Measured) -> bool:
@@ -271,12 +280,15 @@ class ParallelSequence:
 
     def _watch_fill(self, now: Measured) -> None:
         """A piston that is filled too long grips with a jolt, which the output shows."""
+        jolt = self._kink(now)
+        if jolt > self.jolt:
+            self.jolt, self.instants["jolt"] = jolt, self._now
+
+    def _kink(self, now: Measured) -> float:
+        """Second difference of the speed of the output [rad/s]."""
         self._outputs = (*self._outputs[-2:], now.output_speed)
-        if len(self._outputs) > 2:
-            first, middle, last = self._outputs
-            jolt = abs(last - 2.0 * middle + first)
-            if jolt > self.jolt:
-                self.jolt, self.instants["jolt"] = jolt, self._now
+        first, middle, last = self._outputs if len(self._outputs) > 2 else (0.0, 0.0, 0.0)
+        return abs(last - 2.0 * middle + first)
 
     def _lets_go(self, name: str, torque: float) -> bool:
         """Whether an element that opens is no more wanted: one whose kiss point is taken too high would drag."""
