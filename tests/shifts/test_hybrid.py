@@ -52,7 +52,9 @@ def controlled(
 ) -> tuple[cw.Simulator, HybridController]:
     system = d.assemble()
     machines = {name: TorqueSource(f"{name}.command", -MOST, MOST, power=(-POWER, POWER)) for name in box.machines}
-    settings = HybridSettings([(0.0, full), (100.0, full), (300.0, 0.5 * full)], SPEEDS, charge, limits=store.limits, **more)
+    settings = HybridSettings(
+        [(0.0, full), (100.0, full), (300.0, 0.5 * full)], SPEEDS, charge, limits=store.limits, **more
+    )
     plant = cw.shifts.plant_of(system, box)
     made = HybridController(box, plant, machines=machines, engine=EngineSource.of(engine), settings=settings)
     return cw.Simulator(system), made

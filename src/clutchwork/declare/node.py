@@ -283,7 +283,9 @@ class Component(Element):
         try:
             named = {str(part.name).removeprefix(f"{self.name}."): part for part in self.parts()}
         except (AttributeError, TypeError):
-            raise UnknownName(f"{self.name} has values that make no parts; `check` of its driveline names them") from None
+            raise UnknownName(
+                f"{self.name} has values that make no parts; `check` of its driveline names them"
+            ) from None
         if name not in named:
             raise UnknownName(f"{self.name} has no part {quote(name)}{near(name, named, f'parts: {listed(named)}')}")
         return named[name]

@@ -116,7 +116,13 @@ class _GraphBuilder:
         # a plate of several nodes is drawn as one
         plain = not specs(type(component), "port", "thermal") and not inside.nodes
         whole = plain and component.role is Role.COMPOSITE and bool(inside.thermal)
-        thing = Thing(label(component.name), "thermal" if whole else "element", component, pins, frozenset(fixed) | _sumps(component))
+        thing = Thing(
+            label(component.name),
+            "thermal" if whole else "element",
+            component,
+            pins,
+            frozenset(fixed) | _sumps(component),
+        )
         for node in inside.thermal:
             key = ("heat", str(node.name))
             if whole:

@@ -109,9 +109,9 @@ def drive(
     on. UseError where nothing says the torque at the input, or a dual-clutch gearbox has no `sources`.
 
     Parameters: throttle, of the driver, 0 to 1, below 0 where machines brake, a number, a function of time or a signal
-    such as "driver.throttle"; sensed, signals that are read; also, what else is set, such as brakes; sources, motors and engine
-    that give what a shift asks for, the first one first; period, from one call of the controller to the next while it
-    shifts [s]; resting, the same between shifts.
+    such as "driver.throttle"; sensed, signals that are read; also, what else is set, such as brakes; sources, motors
+    and engine that give what a shift asks for, the first one first; period, from one call of the controller to the next
+    while it shifts [s]; resting, the same between shifts.
     """
     expect("cw.shifts.drive", "sim", sim, Simulator, "give a cw.Simulator of the driveline")
     expect("cw.shifts.drive", "control", control, Controller, "give a ShiftController or a HybridController")
@@ -129,7 +129,9 @@ def drive(
     read, set_, last = _SensorReader(sensed, sim, control, share), dict[str, float](), sim.time
     while sim.time < until - 1e-9:
         time = sim.time
-        pedal = float(sim[throttle] if isinstance(throttle, str) else throttle(time) if callable(throttle) else throttle)
+        pedal = float(
+            sim[throttle] if isinstance(throttle, str) else throttle(time) if callable(throttle) else throttle
+        )
         wanted = {} if set_ else control.commands
         now = read(pedal)
         wanted |= control.step(time, now)

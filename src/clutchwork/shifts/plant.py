@@ -13,9 +13,9 @@ from clutchwork.base.errors import UseError, expect
 from clutchwork.base.frozen import Frozen
 from clutchwork.base.quote import listed
 from clutchwork.gearbox.gearbox import Gearbox
+from clutchwork.run.simulation import Assembles, model_of
 from clutchwork.shifts.actuators import ElementActuator
 from clutchwork.shifts.fill_test import FULL, fill_test
-from clutchwork.run.simulation import Assembles, model_of
 from clutchwork.stepping.simulator import Simulator
 
 if TYPE_CHECKING:

@@ -48,7 +48,9 @@ def no_relief_valve(system: System) -> Iterator[Hint]:
         # behind an orifice there may be a fixed pressure
         if "" not in there and not there & relieved:
             line = _oil(flow.outlet)
-            message = f"delivers into {line}, and nothing lets oil out of that above a pressure, so it rises without limit"
+            message = (
+                f"delivers into {line}, and nothing lets oil out of that above a pressure, so it rises without limit"
+            )
             yield Hint(BURSTS, (_pump(flow), line), message, f"add a cw.ReliefValve with {line} as its inlet")
 
 
@@ -79,8 +81,7 @@ def starved_pump(look: Look) -> Iterator[Hint]:
         if len(low):
             begin, end = (float(t) for t in look.time[low[[0, -1]]])
             least = float(np.min(pressure)) + 101325.0
-            message = (
-                f"is not filled between {begin:.4g} and {end:.4g} s: {inlet} comes down to {shown(least, 'Pa')} absolute"
-            )
+            down = f"{inlet} comes down to {shown(least, 'Pa')} absolute"
+            message = f"is not filled between {begin:.4g} and {end:.4g} s: {down}"
             remedy = f"let more oil into {inlet}, or turn the pump slower"
             yield Hint(STARVED, (_pump(flow), inlet), message, remedy, {"pressure [Pa]": least}, begin, end)
