@@ -15,13 +15,11 @@ DRAIN = 3.0
 TOUCH = 0.005
 # what may be left of a filling
 FULL = 1e-6
-# a shorter lag than this share of a period is none
-NO_LAG = 0.1
 
 
 @dataclass
 class ActuatorDriver:
-    """Fills a piston fast, holds it where it touches, and leads the lag of its torque."""
+    """Fills a piston fast, holds it where it touches, and follows the torque that is there."""
 
     of: ElementActuator
     fill_time: float  # s, as it was learnt
@@ -45,7 +43,7 @@ class ActuatorDriver:
             return of.commands[0]
         if self.level < 1.0 - FULL:
             return self._fill(period)
-        self._asked = self._lead(torque, period)
+        self._asked = min(of.most, torque)
         least = TOUCH * of.most
         self.grips |= self.torque > 2.0 * least
         return self.at(self._asked if self.grips else max(least, self._asked))
@@ -67,11 +65,3 @@ class ActuatorDriver:
         of, hold = self.of, self.at(TOUCH * self.of.most)
         self._fills = min(1.0, (1.0 - self.level) * self.fill_time / period) if period else 1.0
         return hold + self._fills * (of.commands[-1] - hold)
-
-    def _lead(self, wanted: float, period: float) -> float:
-        """Torque to ask for, so that the lagging one comes to what is wanted: equation (17)."""
-        lag = self.of.lag
-        if lag <= NO_LAG * period:
-            return wanted
-        asked = self.torque + (wanted - self.torque) / (1.0 - exp(-max(period, lag) / lag))
-        return min(self.of.most, max(0.0, asked))
