@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
-from math import copysign
+from math import copysign, exp
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -41,6 +41,8 @@ COMES_BACK = 0.4
 WHOLE = 50.0
 # torque of an element that counts as none, as a share of that of the input
 NOTHING = 1e-3
+# time constant of the torque of the input in the loop [s]
+SMOOTH = 0.02
 # part of the inertia phase in which the loop has settled and the slip is not over yet
 SETTLED = (0.4, 0.95)
 # part of it behind which what opens behind a piston is let go, where it carries nothing
@@ -93,6 +95,7 @@ class ParallelSequence:
     _held: dict[str, float] = field(default_factory=dict)  # Pa, of what opens, at the beginning
     _start: Array = field(default_factory=lambda: np.zeros(0))  # y where the inertia phase begins [rad/s]
     _speed: Array = field(default_factory=lambda: np.zeros(0))  # the same of its rate [rad/s2]
+    _torque: float = 0.0  # N m, of the input behind a filter, in the inertia phase
     _fill_time: float = 0.0  # s
     _time: float = 0.0  # s, of the inertia phase as planned
     _passed: float = 0.0  # s, of that plan
@@ -340,7 +343,7 @@ class ParallelSequence:
     def _begin(self, now: Measured) -> None:
         """The inertia phase from here."""
         one, with_ = self.one, self.with_
-        self._start, self.loaded = self._y(now), now.input_torque
+        self._start, self.loaded, self._torque = self._y(now), now.input_torque, now.input_torque
         self._speed = np.array([self.rates.get(name, 0.0) for name in one.on])
         self._integral, self._passed = np.zeros(len(one.on)), 0.0
         # of several that open one may be wanted later
@@ -381,7 +384,9 @@ class ParallelSequence:
         # under power the torque at hand makes up what the slips are off their course
         asked = rate if self.loaded > 0.0 else law
         self._ask(float(self._start @ (one.inertia @ asked)), now)
-        force = one.inertia @ law + one.coupling * self._output.slope - one.input * now.input_torque
+        # that of a converter answers within a period to what is done here: at once it would come back as an oscillation
+        self._torque += (1.0 - exp(-period / SMOOTH)) * (now.input_torque - self._torque)
+        force = one.inertia @ law + one.coupling * self._output.slope - one.input * self._torque
         torques, missed = self._taken(force, now)
         if with_.closed_loop and missed <= 1e-6:
             self._integral = self._integral + with_.integral * error * period
