@@ -183,8 +183,9 @@ class ParallelSequence:
         return "inertia"
 
     def _runs_away(self, now: Measured) -> bool:
-        """Whether an element that opens slips away from the new gear: too little holds the input."""
-        slips = ((now.slips[name], self.one.offsets[name] * now.output_speed) for name in self.one.off)
+        """Whether an element that held the gear before slips away from the new one: too little holds the input."""
+        held = [name for name in self.one.off if self.one.off_torques[name]]
+        slips = ((now.slips[name], self.one.offsets[name] * now.output_speed) for name in held)
         return any(slip * ahead < 0.0 and abs(slip) > self.with_.sync_slip for slip, ahead in slips)
 
     def inertia(self, passed: float, period: float, now: Measured) -> str:
