@@ -399,6 +399,10 @@ class Law(Declared):
         """What the bounds of single values cannot say, as (quantity, what is wrong, remedy)."""
         return []
 
+    def slip_problems(self, unit: str) -> Found:  # noqa: ARG002, most say nothing of units
+        """What does not fit a contact whose slip has a unit, rad/s or m/s."""
+        return []
+
     def own_states(self) -> tuple[State, ...]:
         """The states in use, the first ones of `states`."""
         return self.states

@@ -113,12 +113,21 @@ class FormulaLaw(Law):
         found = [(one.field, one.message, one.remedy) for one in mistakes]
         if program is None:
             return found
-        units_given = {one.name: one.unit for one in type(self).numbers if one.unit != "1"}
-        # where no number has a unit, all are in those of SI
-        wrong = mistakes_of_units(program, units_given) if units_given else []
-        found += [(one.field, one.message, one.remedy) for one in wrong]
+        found += self._of_units(program, "rad/s", "m/s")
         found += _unread(self, program)
         return found or next(self.faults(program), [])
+
+    def slip_problems(self, unit: str) -> Found:
+        program, _ = self._program
+        found = [] if program is None else self._of_units(program, unit)
+        kind = "shafts" if unit == "rad/s" else "masses"
+        return [(name, f"{fault}, with the slip of {kind} [{unit}]", remedy) for name, fault, remedy in found]
+
+    def _of_units(self, program: Program, *slips: str) -> Found:
+        """What does not fit; where no number has a unit, all are in those of SI."""
+        given = {one.name: one.unit for one in type(self).numbers if one.unit != "1"}
+        wrong = mistakes_of_units(program, given, slips) if given else []
+        return [(one.field, one.message, one.remedy) for one in wrong]
 
     def advice(self) -> Found:
         spare = [name for name in INPUTS[1:] if getattr(self, name) is not None and not self.reads(name)]
