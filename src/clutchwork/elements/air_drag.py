@@ -8,9 +8,9 @@ from clutchwork.elements.bases.heating import Heating
 
 @component(Role.TORQUE, hooks=("margin", "cross", "turns", "settle"))
 class AirDrag(Heating):
-    """Force `-density/2 area u abs(u)` with `u` the speed less the wind.
+    """Force `-density/2 area u abs(u)` with `u` the speed minus the wind.
 
-    Use it for the drag of a vehicle; `Vehicle` holds one. What a wind from behind gives counts as negative heat.
+    Use it for the drag of a vehicle; `Vehicle` holds one. Work done by a tail wind counts as negative heat.
     """
 
     shaft: Node = port("mass that moves through the air", domain="translation")

@@ -20,11 +20,11 @@ from clutchwork.declare import Component, Found, Role, SignalLike, State, compon
 class ClutchActuator(Component):
     """Piston that a supply fills through an orifice against its return spring, until it meets the plates.
 
-    Use it as the `normal_force` of a contact. With `u` the supply less the pressure, the flow is
-    `discharge area sqrt(2/density) u/(u^2 + laminar_pressure^2)^(1/4)`. The pressure balances `preload`, `spring_rate`
-    times the stroke and, beyond `kiss_stroke`, `contact_rate` times the rest, which is the force on the plates. Before
-    this kiss point there is none. `seal_friction` holds the piston where it is. Oil in `volume` is compressed. At its
-    stop the piston rests while the pressure is below the preload.
+    Use it as the `normal_force` of a contact. With `u` the supply minus the pressure, the flow is `discharge area
+    sqrt(2/density) u/(u^2 + laminar_pressure^2)^(1/4)`. The pressure balances `preload`, `spring_rate` times the stroke
+    and, beyond `kiss_stroke`, `contact_rate` times the remaining stroke, which is the force on the plates. Before this
+    kiss point there is none. `seal_friction` can hold the piston in place. Oil in `volume` is compressed. At its stop
+    the piston rests while the pressure is below the preload.
 
     A measured step response gives the values, the kiss pressure those of the springs, the fill time the orifice and the
     slope the contact rate: `clutchwork.fit.fit_response`.

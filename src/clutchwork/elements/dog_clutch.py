@@ -19,12 +19,12 @@ from clutchwork.elements.bases.heating import Heating
     hooks=("margin", "cross", "turns", "settle", "heat", "freed"),
 )
 class DogClutch(Heating):
-    """Teeth that mesh only when tooth faces gap and the slip is below `speed`; then they hold any torque.
+    """Teeth that engage only when tooth faces gap and the slip is below `speed`; then they carry any torque.
 
-    The sleeve follows the command with a time constant and meets the tips at `reach`. Where tooth stands on tooth or
-    the slip is too high it is blocked there, until both fit or the command goes back. In mesh the flanks have play over
-    `gap` and press with `stiffness depth (1 + damping closing speed)`, never pulling. Use it for shift sleeves, parking
-    locks and range clutches. Pointed teeth find their gap from any angle.
+    The sleeve follows the command with a time constant and meets the tips at `reach`. With tooth on tooth or at too
+    high a slip it is blocked there, until both fit or the command is withdrawn. In mesh the flanks have play over `gap`
+    and press with `stiffness depth (1 + damping closing speed)`, never pulling. Use it for shift sleeves, parking locks
+    and range clutches. Pointed teeth find their gap from any angle.
 
     Source of the damping: K. H. Hunt, F. R. E. Crossley 1975, doi:10.1115/1.3423596.
     """

@@ -34,11 +34,12 @@ NEAR_REST = 0.1
 class ElectricMotor(Heating):
     """Motor that follows a torque command within its envelope in all four quadrants, with its losses.
 
-    Use it for traction motors, starters, generators and servo drives. The command lags first and is clipped then, to
-    `max_torque` and `max_power` while it drives, to those of the generator while it brakes; at rest it holds no more
-    than it drives with. `electric_power` is what it draws, work and losses, and is negative where it charges. The
-    losses are a polynomial, plus a map, or follow from a map of efficiencies; tables over abs(speed) and abs(torque)
-    are held beyond their ends. They warm its `heat` node, or a `winding` of its own, whose temperature may derate it.
+    Use it for traction motors, starters, generators and servo drives. The command first passes the lag and is then
+    clipped, to `max_torque` and `max_power` while it drives, to those of the generator while it brakes; at rest it
+    holds no more than it drives with. `electric_power` is what it draws, work and losses, and is negative while it
+    charges. The losses are a polynomial, plus a map, or follow from a map of efficiencies; tables over abs(speed) and
+    abs(torque) are held beyond their ends. They warm its `heat` node, or a `winding` of its own, whose temperature may
+    derate it.
     """
 
     shaft: Node = port("shaft that a positive torque accelerates")

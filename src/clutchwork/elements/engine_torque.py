@@ -38,7 +38,7 @@ STATES = (
     hooks=("edges", "edge", "margin", "cross", "turns", "settle", "pace", "count", "fits"),
 )
 class EngineTorque(Component):
-    """Torque over speed and throttle with idle control, limiter, boost and ripple, less what it holds at rest.
+    """Torque over speed and throttle with idle control, limiter, boost and ripple, minus what it holds at rest.
 
     Use it to build engines of your own; `Engine` makes its grids from curves and adds a contact with the torque at
     rest, which is left out here. All tables hold over the one grid of abs(speed), and are held beyond it.

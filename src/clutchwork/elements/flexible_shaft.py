@@ -16,7 +16,7 @@ from clutchwork.elements.spring_damper import SpringDamper
 
 
 class Coordinate(SpringDamper):
-    """Spring and damper on the amplitude of a mode, which reacts on no member."""
+    """Spring and damper on the amplitude of a mode, without a reaction on any member."""
 
     ways: ClassVar[tuple[Way, ...]] = (Way("amplitude", "rate of the amplitude"),)
 
@@ -31,7 +31,7 @@ GEOMETRY = ("length", "outer_diameter")
 
 @component(Role.COMPOSITE)
 class FlexibleShaft(Heating):
-    """Shaft with inertia along its length: equal springs in a row, and inertias between them and at both ends.
+    """Shaft with distributed inertia: equal springs in series, with inertias between them and at both ends.
 
     Use it where torsional waves in a long shaft matter, and for its natural frequencies; a short shaft is a
     `SpringDamper`. Give stiffness and inertia, or the dimensions of a round bar or tube. Of `segments` springs each is

@@ -10,7 +10,7 @@ from clutchwork.declare import Component, Node, Role, SignalLike, State, Work, c
 
 @component(Role.TORQUE, states=(State("height", "m", "height climbed since the start"),))
 class Grade(Component):
-    """Downhill force of a weight, `-weight sin(a)` with `a = atan(slope)`; what it lifts is stored.
+    """Downhill force of a weight, `-weight sin(a)` with `a = atan(slope)`; the work of lifting is stored.
 
     Use it for a vehicle on a grade; `Vehicle` holds one. The slope is a number, a signal or a `Road`.
     """

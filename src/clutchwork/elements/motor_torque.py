@@ -104,7 +104,7 @@ class MotorTorque(Heating):
         return found
 
     def own_states(self) -> tuple[State, ...]:
-        """The command that has come through, where it lags."""
+        """The lagged command."""
         return self.states if self.lag > 0.0 else ()
 
     def initial_states(self) -> tuple[float, ...]:

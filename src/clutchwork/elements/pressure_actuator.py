@@ -12,7 +12,7 @@ from clutchwork.elements.bases.geometry import Found
     hooks=("margin", "cross"),
 )
 class PressureActuator(Component):
-    """Piston that has to fill, then follows its command with a lag and within limits of its rate.
+    """Piston that first fills, then follows its command with a lag and rate limits.
 
     Use it as the `pressure` of any contact. The return spring takes `spring` off the command. An empty piston fills
     first, in `fill_time` where the command is `fill_pressure` above the spring, and in inverse proportion else; then
@@ -36,5 +36,5 @@ class PressureActuator(Component):
         return [("initial_pressure", fault, f"give {say('filled = true', 'filled=True')}")]
 
     def initial_states(self) -> tuple[float, ...]:
-        """Pressure at the start [Pa]; of an empty piston less than none by what it has to fill."""
+        """Pressure at the start [Pa]; of an empty piston negative by what it has to fill."""
         return (self.initial_pressure if self.filled else -self.fill_time * self.fill_pressure / self.lag,)

@@ -8,7 +8,7 @@ from clutchwork.elements.bases.heating import Heating
 
 @component(Role.TORQUE, states=(State("filling", "1", "share of the full torque"),), hooks=("edges", "edge", "count"))
 class Retarder(Heating):
-    """Brake `-filling min(capacity w^2, max_torque, max_power/abs(w))` against the speed w; it holds nothing at rest.
+    """Brake `-filling min(capacity w^2, max_torque, max_power/abs(w))` against the speed w; no torque at rest.
 
     Use it for hydrodynamic retarders of trucks and rail cars: at low speed the filled ring limits the torque, then the
     valve, then the cooler. The filling follows the command with the time constant `lag`.

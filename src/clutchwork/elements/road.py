@@ -14,7 +14,7 @@ from clutchwork.declare import Component, Points, Role, SignalLike, State, compo
     hooks=("margin", "cross"),
 )
 class Road(Component):
-    """Slope of a road by its elevation, a table over the horizontal position of what drives on it.
+    """Slope of a road from its elevation, a table over the horizontal position of the vehicle.
 
     Use it as the `slope` of a `Vehicle`. The position follows the speed, `d position/dt = speed cos(a)` with
     `a = atan(slope)`, so that the height is that of the table. Between two points the slope is constant, at a point it

@@ -29,10 +29,10 @@ from clutchwork.elements.plate_contact import PlateContact
 class Synchroniser(Heating):
     """Double-sided synchroniser: one sleeve that joins its hub to one of two gears, or to none.
 
-    On either side a cone brings the gear to the speed of the hub, with the torque
-    `coefficient force radius / sin(half_angle)`; once the slip is below `speed` the pointed teeth of the dog clutch
-    mesh and hold any torque. A command from 0 to 1 shifts to the forward gear, from 0 to -1 to the backward one.
-    Use it for the shifts of manual and automated gearboxes.
+    On each side a cone brings the gear to the speed of the hub, with the torque `coefficient force radius /
+    sin(half_angle)`; once the slip is below `speed` the pointed teeth of the dog clutch engage and carry any torque. A
+    command from 0 to 1 shifts to the forward gear, from 0 to -1 to the backward one. Use it for the shifts of manual
+    and automated gearboxes.
 
     Its parts are "forward_cone", "forward_dog", "backward_cone", "backward_dog".
     """

@@ -21,12 +21,11 @@ WAYS = (
     ways=WAYS,
 )
 class Tyre(Heating):
-    """Tyre by the Magic Formula with relaxation, which holds a vehicle at rest as a spring does.
+    """Tyre by the Magic Formula with relaxation; it holds a vehicle at rest like a spring.
 
-    Use it where wheels slip, and for the elasticity between driveline and road. The force on the mass is
-    `load D sin(C atan(B x - E (B x - atan(B x))))`; x is the slip ratio once the tread has rolled in over the
-    relaxation length, and a deflection at rest. `torque` is that force [N], `rate` the speed of the mass over that of
-    the tread.
+    Use it where wheels slip, and for the elasticity between driveline and road. The force on the mass is `load D sin(C
+    atan(B x - E (B x - atan(B x))))`; x is the slip ratio, reached over the relaxation length, and at rest a deflection
+    of the tread. `torque` is that force [N], `rate` the speed of the mass over that of the tread.
     """
 
     shaft: Node = port("wheel", domain="rotation")

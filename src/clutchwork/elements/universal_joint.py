@@ -17,11 +17,11 @@ from clutchwork.elements.bases.ratios import Rates, angle_of
     ways=(Way("follower", "follower relative to the support"), Way("base", "base relative to the support")),
 )
 class UniversalJoint(Component):
-    """Cardan joint between shafts at an angle: the follower swings about the speed of the base twice per turn.
+    """Cardan joint between shafts at an angle: the follower oscillates about the speed of the base twice per turn.
 
-    Use it for propeller shafts and steering columns. tan(angle of the follower) = tan(angle of the base)/cos(bend);
-    the ratio of the speeds runs between cos(bend) and 1/cos(bend). Two joints of one bend have constant speed with
-    `phase = pi/2` at the second, and double the error with 0.
+    Use it for propeller shafts and steering columns. tan(angle of the follower) = tan(angle of the base)/cos(bend); the
+    ratio of the speeds runs between cos(bend) and 1/cos(bend). Two joints of equal bend give constant speed with `phase
+    = pi/2` at the second one, and twice the error with 0.
 
     Equations: docs/theory/varying-ratios.md.
     Source: F. Schmelz, H.-Ch. Graf v. Seherr-Thoss, E. Aucktor, Universal Joints and Driveshafts, Springer 2006.

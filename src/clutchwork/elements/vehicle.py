@@ -14,7 +14,7 @@ from clutchwork.laws.coulomb import Coulomb
 
 @component(Role.COMPOSITE)
 class Vehicle(Component):
-    """Forces of the road and the air on the mass of a vehicle: grade, drag, rolling resistance that holds at rest.
+    """Road and air forces on the mass of a vehicle: grade, drag, and rolling resistance that holds at rest.
 
     `-m g sin(a) - density/2 area (v - wind) abs(v - wind) - R`, `a = atan(slope)`, with the rolling resistance
     `R = sign(v) m g cos(a) (rolling_coefficient + rolling_rise abs(v))`. At rest the vehicle stays while all other

@@ -17,7 +17,6 @@ from clutchwork.model.fields import is_sound, object_problems
 from clutchwork.model.numbers import At
 from clutchwork.model.thermal import Within
 
-
 SLIPS = {Domain.ROTATION: "rad/s", Domain.TRANSLATION: "m/s"}
 
 

@@ -76,7 +76,7 @@ class Source(NamedTuple):
 
 
 class FormulaGraph:
-    """The numbers that expressions are made of, each once: what two of them have in common is computed once."""
+    """The operations of all expressions, each once: common subexpressions are computed once."""
 
     def __init__(self, names: Collection[str], forward: bool) -> None:
         self.names = names  # that may be read
@@ -109,7 +109,7 @@ class FormulaGraph:
         return self._fused(name, list(of), parts, source)
 
     def _fused(self, name: str, of: list[int], parts: Sequence[FormulaNode], source: Source) -> int:
-        """An operation as one word with another where that exists, to the same bits."""
+        """An operation fused with another one if the core has that, to the same bits."""
         last = parts[-1]
         if name in ("multiply", "divide") and "negate" in (parts[0].operation, last.operation):
             # the sign of a product or quotient is put behind it
@@ -135,7 +135,7 @@ class FormulaGraph:
         return self._moving[i]
 
     def size(self, i: int, source: Source) -> int:
-        """The absolute value; of what goes forward alone it is smooth across zero, as the core asks for."""
+        """The absolute value; for a slip in the direction of sliding it is smooth across zero, as the core requires."""
         node = self.nodes[i]
         if self.forward and node.name == SLIP:
             return i

@@ -1,4 +1,4 @@
-"""What laws given by expressions have in common: numbers of their own names, and what is wrong with them."""
+"""Common base of laws given by expressions: named numbers, and their checks."""
 
 from __future__ import annotations
 
@@ -49,7 +49,7 @@ class Number(NamedTuple):
 
 @family
 class FormulaLaw(Law):
-    """A law whose equations are expressions in the model, over numbers that it names: `v_s="0.1 rad/s"`."""
+    """A law whose equations are expressions of the model over named numbers: `v_s="0.1 rad/s"`."""
 
     # a call may have numbers of any name
     takes_numbers: ClassVar[bool] = True
@@ -138,11 +138,11 @@ class FormulaLaw(Law):
         return {one.name: float(getattr(self, one.name)) for one in type(self).numbers}
 
     def faults(self, program: Program) -> Iterator[Found]:
-        """What is wrong with the values of a formula, at the places where it is looked at."""
+        """What is wrong with the values of a formula at the points where it is checked."""
         raise NotImplementedError
 
     def places(self, program: Program) -> list[dict[str, float]]:
-        """Inputs other than the slip at which it is looked at."""
+        """Inputs other than the slip at which it is checked."""
         warm: Sequence[float] = TEMPERATURES if TEMPERATURE in program.reads else (300.0,)
         pressed: Sequence[float] = PRESSURES if PRESSURE in program.reads else (1e5,)
         if isinstance(self.temperature, Real):
@@ -153,7 +153,7 @@ class FormulaLaw(Law):
 
 
 def _text(value: Any) -> Any:
-    """What is written of an expression; nothing where it is none."""
+    """The text of an expression; empty if it is not one."""
     return value if value is None or isinstance(value, str | int | float) else ""
 
 
@@ -194,7 +194,7 @@ def _is_free(name: Any) -> bool:
 
 
 def _unit(value: Any) -> str:
-    """The unit of SI of a number as it is given; 1 where it has none, or none that is known."""
+    """The SI unit of a number as it is given; 1 if it has none, or an unknown one."""
     if isinstance(value, Mapping):
         value = f"1 {value.get('unit', '')}"
     try:
@@ -231,7 +231,7 @@ def _power(name: str, power: int) -> str:
 
 @lru_cache(1000)
 def _with_numbers(cls: Any, numbers: tuple[Number, ...]) -> type:
-    """A declaration with a field for each number; it counts as the one that it is made from."""
+    """A declaration with a field for each number, which counts as the one it is derived from."""
     fields = {one.name: param(one.unit, f"{one.name} of the formula") for one in numbers}
     body = {
         **fields,

@@ -56,18 +56,18 @@ class Program(NamedTuple):
 
     @property
     def head(self) -> Points:
-        """Registers of both coefficients and what the first needs; how many numbers and constants, what rates need."""
+        """Registers of both coefficients, counts of numbers and constants, instructions of the first and of rates."""
         first = (self.coefficient, self.at_rest, self.for_coefficient)
         second = (len(self.names), len(self.constants), self.for_rates)
         return tuple((float(a), float(b), float(c)) for a, b, c in (first, second))
 
     @property
     def rate_words(self) -> Points:
-        """A word that is always there, then the register of each rate."""
+        """A dummy word, then the register of each rate."""
         return ((0.0, 0.0, 0.0), *((float(register), 0.0, 0.0) for register in self.rates))
 
     def run(self, given: Mapping[str, float]) -> list[float]:
-        """All registers for the values of what is read, as doubles; nothing is refused."""
+        """All registers for given inputs, as doubles, without checks."""
         start = [given.get(name, 0.0) for name in (*INPUTS, *self.states, *self.names)]
         registers = [*map(float, start), *self.constants]
         for node in self.nodes:
@@ -82,7 +82,7 @@ class Program(NamedTuple):
 
 
 def _computed(operation: str, of: Sequence[float]) -> float:
-    """What the core computes, round-off of its functions apart."""
+    """What the core computes, except for round-off of its functions."""
     try:
         return CALLS[operation](*of)
     except (OverflowError, ValueError):
@@ -128,7 +128,7 @@ CALLS: dict[str, Callable[..., float]] = {
 
 
 class Texts(NamedTuple):
-    """What is written of a law."""
+    """The texts of a law."""
 
     expression: Any
     at_rest: Any
@@ -190,7 +190,7 @@ def _laid_out(graph: FormulaGraph, roots: Sequence[int], states: tuple[str, ...]
 
 
 def _collect(graph: FormulaGraph, root: int, needed: list[int], seen: set[int]) -> None:
-    """What a number follows from, before it."""
+    """Collect the operands of a node before the node itself."""
     if root in seen:
         return
     for part in graph.nodes[root].of:
