@@ -217,7 +217,7 @@ def differentiable(
     """What a Driveline or a System gives as a function of some of its numbers, with exact derivatives.
 
     Parameters: t_end [s], or with a unit, options and their fields by name are those of `simulate`; of, values as
-    `outputs` of `sweep`: a signal at the end, `cw.at`, `cw.lock`, `cw.maximum`, `cw.integral`, `cw.squared_jerk` ...;
+    `outputs` of `sweep`: a signal at the end, `cw.at`, `cw.lock`, `cw.maximum`, `cw.integral`, `cw.jerk` ...;
     by, names of numbers as in `System.changed`: "c1.gain", "engine.inertia", of a table "c1.pressure.values", all
     ordinates, "c1.pressure.values[3]", the third one, "c1.pressure.values[2:]", all from the second on, and
     "c1.pressure.times[3]", the time of the third knot;

@@ -143,6 +143,10 @@ class Channels(Mapping[str, Channel]):
         name = f"{branch.name}.{branch.component.supply}"
         yield f"{name}_power", _column(self._start("supply_power") + number, "W")
         yield f"{name}_energy", _column(self._start("supply_energy") + number, "J")
+        # what it draws and does not give its shaft
+        drawn = RowEntry(self._start("supply_power") + number)
+        given = Total(self._total("torque", branch).indices, negative=True)
+        yield f"{branch.name}.loss", Channel("W", Powers((drawn, Power(given, self._rate(branch)))))
 
     def _whole(self, first: Branch) -> Iterator[tuple[str, Channel]]:
         """Power and work of an element that acts along several ways: the sums of all."""

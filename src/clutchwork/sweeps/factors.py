@@ -9,10 +9,10 @@ from math import isfinite
 from numbers import Real
 from typing import TYPE_CHECKING, Any
 
-from clutchwork.base.errors import UseError, near
+from clutchwork.base.errors import ModelError, UseError, near
 from clutchwork.base.quote import quote
 from clutchwork.declare.calls import explained
-from clutchwork.model.changes import all_names, field_of, named, target
+from clutchwork.model.changes import all_names, field_of, named, target, targets_of
 
 if TYPE_CHECKING:
     from clutchwork.model.model import Model
@@ -53,6 +53,9 @@ def multiplied(model: Model, name: str) -> dict[str, float]:
     owners = named(model)
     is_pattern = "*" in name or "?" in name
     known = [one for one in all_names(model) if fnmatchcase(one, name)] if is_pattern else [name]
+    unknown = [] if is_pattern else targets_of(model, [name])[1]
+    if unknown:
+        raise ModelError(unknown, model.name)
     found = {one: _number_of(owners, one) for one in known}
     problems = list(_faults(model, name, found))
     if problems:
@@ -61,7 +64,7 @@ def multiplied(model: Model, name: str) -> dict[str, float]:
 
 
 def _number_of(owners: Mapping[str, Any], name: str) -> Any:
-    """The number behind a name, something else where it is none; None where nothing is given, or nothing is there."""
+    """What a name holds; None if that is not given."""
     aim = target(owners, name)
     return None if aim is None else field_of(aim)[0]
 
@@ -74,8 +77,9 @@ def _faults(model: Model, name: str, found: Mapping[str, Any]) -> Iterator[str]:
             remedy = f"; take {inside[0]!r} or another number inside of it" if inside else ""
             yield f"{one} is {quote(value)}, not a number that a factor could multiply{remedy}"
             return
-    if not numbers:
-        said = "matches no number" if "*" in name or "?" in name else "has no number"
-        yield f"{name!r} {said} of this driveline{near(name, all_names(model))}"
+    if name in found and not numbers:
+        yield f"{name} has no value in this driveline that a factor could multiply; give values: [...]"
+    elif not numbers:
+        yield f"{name!r} matches no number of this driveline{near(name, all_names(model))}"
     elif not any(numbers.values()):
         yield f"{name!r} is 0 in this driveline, which no factor changes; give values: [...]"
