@@ -150,6 +150,18 @@ class Entry(NamedTuple):
     fault: tuple[str, str] = ("", "")  # why it does not fit its place, and the remedy
 
 
+class StateSum(NamedTuple):
+    """A signal of an element that is a weighted sum of states: its last word, unit, weights of states, and offset.
+
+    States are named within the element, "force", or "segment_1.spring_torque" of a part.
+    """
+
+    name: str
+    unit: str
+    weights: Mapping[str, float]
+    offset: float = 0.0
+
+
 class ShiftTable(NamedTuple):
     """The gears of a gearbox; names are those in results."""
 
@@ -306,6 +318,10 @@ class Component(Element):
 
         The tolerances of a run are absolute too, so a state should not be small against 1.
         """
+        return ()
+
+    def state_sums(self) -> tuple[StateSum, ...]:
+        """Further signals that follow from its states, or from those of its parts."""
         return ()
 
     def start_positions(self) -> tuple[tuple[Node, float], ...]:

@@ -459,7 +459,8 @@ def compiled_text(cls: Any) -> str:
     sort = "" if cls.role is not Role.LAW else " sticks" if cls.sticks else " compliant"
     ways = "".join(f" {way.name}" for way in cls.ways) if len(cls.ways) > 1 else ""
     gathers = " gathers" if getattr(cls, "gathers", False) else ""
-    return f"{cls.role.value} {cls.kind} {names} {len(cls.states)}{sort}{ways}{gathers}"
+    code = "".join(f" {word}" for word in getattr(cls, "code_words", ()))
+    return f"{cls.role.value} {cls.kind} {names} {len(cls.states)}{sort}{ways}{gathers}{code}"
 
 
 def _field_text(name: str, spec: Spec) -> str:

@@ -16,4 +16,4 @@ class AirDrag(Heating):
     shaft: Node = port("mass that moves through the air", domain="translation")
     area: float = param("m2", "frontal area times drag coefficient", at_least=0.0)
     density: float = param("kg/m3", "density of the air", default=1.2, above=0.0)
-    wind: SignalLike = signal("m/s", "speed of the air along the way, positive from behind", default=0.0)
+    wind: SignalLike = signal("m/s", "speed of the air along the road, positive from behind", default=0.0)

@@ -29,7 +29,7 @@ class BatteryAnswer(NamedTuple):
         State("charge", "1", "what is in it, over its capacity"),
         State("energy", "J", "taken out of its cells since the start, at their open-circuit voltage"),
         State("loss", "J", "heat of its resistance since the start"),
-        State("unserved", "J", "asked for beyond its limits since the start, less what it refused to take"),
+        State("unserved", "J", "demanded beyond its limits since the start, minus what it refused to take"),
     ),
     hooks=("margin", "cross"),
 )

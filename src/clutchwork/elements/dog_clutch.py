@@ -43,7 +43,7 @@ class DogClutch(Heating):
     lag: float = param("s", "time constant of the sleeve", default=0.02, above=0.0)
     pointed: bool = flag("pointed teeth, which are guided into their gap", default=False)
     reversed: bool = flag("a negative command closes it", default=False)
-    command: SignalLike = signal("1", "wanted position of the sleeve, 0 out, 1 in")
+    command: SignalLike = signal("1", "commanded position of the sleeve, 0 out, 1 in")
     initial_angle: float = option("rad", "angle at the start, 0 in the middle of a gap", default=0.0)
     engaged: bool = option("1", "in mesh at the start, at any slip", default=False, flag=True)
 

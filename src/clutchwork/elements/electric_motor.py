@@ -69,7 +69,7 @@ class ElectricMotor(Heating):
         "W", "largest power that brakes, as `max_power` by default", default=None, above=0.0
     )
     lag: float = param("s", "time constant of the command, 0: it acts at once", default=0.0, at_least=0.0)
-    initial_request: float = option("N m", "command that has come through at the start", default=0.0, units=("N",))
+    initial_request: float = option("N m", "lagged command at the start", default=0.0, units=("N",))
     no_load_loss: float = param("W", "constant loss", default=0.0, at_least=0.0)
     drag_loss: float = param("W s/rad", "loss over abs(speed)", default=0.0, at_least=0.0, units=("W s/m",))
     iron_loss: float = param("W s2/rad2", "loss over speed^2", default=0.0, at_least=0.0, units=("W s2/m2",))

@@ -25,7 +25,7 @@ from clutchwork.elements.bases.grids import shape_problems
 from clutchwork.elements.bases.ratios import angle_of
 
 STATES = (
-    State("opening", "1", "throttle that has come through"),
+    State("opening", "1", "throttle behind its lag"),
     State("idle", "1", "integral of the idle control"),
     State("boost", "1", "share of the full boost"),
     State("crank", "rad", "crank angle"),
@@ -84,7 +84,7 @@ class EngineTorque(Component):
     amplitudes: Sequence[float] = numbers("1", "amplitude of each over the burning part", example=(0.5,))
     phases: Sequence[float] = numbers("rad", "phase of each", example=(0.0,))
     throttle: SignalLike = signal("1", "throttle, 0 closed, 1 open")
-    initial_opening: float = option("1", "throttle that has come through at the start", default=0.0, at_least=0.0)
+    initial_opening: float = option("1", "lagged throttle at the start", default=0.0, at_least=0.0)
     initial_idle: float = option("1", "integral of the idle control at the start", default=0.0, at_least=0.0)
     initial_boost: float = option("1", "boost at the start", default=0.0, at_least=0.0)
     initial_crank: float | None = option(

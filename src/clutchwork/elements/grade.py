@@ -19,7 +19,7 @@ class Grade(Component):
 
     shaft: Node = port("mass that climbs", domain="translation")
     weight: float = param("N", "weight of all that climbs with it", above=0.0)
-    slope: SignalLike = signal("1", "rise over horizontal way, positive uphill", default=0.0, example=0.05)
+    slope: SignalLike = signal("1", "rise over horizontal distance, positive uphill", default=0.0, example=0.05)
 
     def initial_states(self) -> tuple[float, ...]:
         """Height at the start [m]."""

@@ -25,5 +25,5 @@ class MotionSensor(Component):
         "acceleration": "the rate of that",
     }
 
-    base: Node | None = port("side that motion is counted from", default=None)
+    base: Node | None = port("side that motion is measured from", default=None)
     follower: Node = port("side whose motion counts positive")

@@ -20,7 +20,7 @@ class PrescribedAcceleration(PrescribedMotion):
 
     integrates: ClassVar[bool] = True
 
-    acceleration: SignalLike = signal("rad/s2", "wanted acceleration relative to the base", units=("m/s2",))
+    acceleration: SignalLike = signal("rad/s2", "prescribed acceleration relative to the base", units=("m/s2",))
 
     def speed_signal(self, speed: float) -> Signal:
         """Integral of the acceleration."""

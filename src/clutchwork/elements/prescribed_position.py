@@ -20,7 +20,7 @@ class PrescribedPosition(PrescribedMotion):
     Source of the filter: W. E. Thomson 1949, doi:10.1049/pi-3.1949.0101.
     """
 
-    position: SignalLike = signal("rad", "wanted angle or position from the base", units=("m",))
+    position: SignalLike = signal("rad", "prescribed angle or position from the base", units=("m",))
     cutoff: float | None = option(
         "Hz", "corner frequency of the filter, none by default", default=None, above=0.0, example=10.0
     )

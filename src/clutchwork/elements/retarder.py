@@ -23,7 +23,7 @@ class Retarder(Heating):
         "N m", "largest torque, no limit by default", default=1e15, above=0.0, units=("N",), example=800.0
     )
     max_power: float = param("W", "largest power, no limit by default", default=1e15, above=0.0, example=1e5)
-    command: SignalLike = signal("1", "wanted filling, 0 empty, 1 full", at_least=0.0, at_most=1.0, default=1.0)
+    command: SignalLike = signal("1", "commanded filling, 0 empty, 1 full", at_least=0.0, at_most=1.0, default=1.0)
     lag: float = param(
         "s", "time constant of the filling, 0: it follows at once", default=0.0, at_least=0.0, fixed=True, example=0.1
     )

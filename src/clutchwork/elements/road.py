@@ -8,8 +8,8 @@ from clutchwork.declare import Component, Points, Role, SignalLike, State, compo
 @component(
     Role.PROCESS,
     states=(
-        State("slope", "1", "rise over horizontal way where the vehicle is"),
-        State("position", "m", "horizontal way along the road"),
+        State("slope", "1", "rise over horizontal distance where the vehicle is"),
+        State("position", "m", "horizontal distance along the road"),
     ),
     hooks=("margin", "cross"),
 )

@@ -51,7 +51,7 @@ class Synchroniser(Heating):
     damping: float = param("s/rad", "damping of the flanks over their force", default=1.0, at_least=0.0)
     speed: float = param("rad/s", "slip above which the sleeve is held back", default=1.0, above=0.0)
     lag: float = param("s", "time constant of the sleeve", default=0.02, above=0.0)
-    command: SignalLike = signal("1", "wanted position of the sleeve: 1 forward, 0 neutral, -1 backward")
+    command: SignalLike = signal("1", "commanded position of the sleeve: 1 forward, 0 neutral, -1 backward")
     engaged: bool = option("1", "the forward gear is in mesh at the start", default=False, flag=True)
     engaged_backward: bool = option("1", "the backward gear is in mesh at the start", default=False, flag=True)
 

@@ -54,7 +54,7 @@ class TorsionalDamper(Heating):
     friction_speed: Sequence[float] | None = numbers(
         "N m s2/rad2", "what the square of the speed of the base adds to the limit of each", default=None, at_least=0.0
     )
-    dry_friction: float = param("N m", "friction that has no give", default=0.0, at_least=0.0, units=("N",))
+    dry_friction: float = param("N m", "rigid friction", default=0.0, at_least=0.0, units=("N",))
     initial_twist: float = option("rad", "twist at the start", default=0.0, units=("m",))
 
     def problems(self) -> Found:

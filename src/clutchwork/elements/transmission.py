@@ -75,7 +75,9 @@ class Transmission(TabledComposite, Heating):
     gearbox: Any = data("one of the catalogue by name, a file, its content or an object", example=frozen(EXAMPLE))
     inertia: float = param("kg m2", "inertia of each member that `inertias` does not name", default=0.01, at_least=0.0)
     inertias: Mapping[str, float] | None = named("kg m2", "inertia by member", at_least=0.0)
-    torque: float = param("N m", "most torque at the input, for capacities that nobody gave", default=400.0, above=0.0)
+    torque: float = param(
+        "N m", "most torque at the input, for capacities that are not given", default=400.0, above=0.0
+    )
     shift: Mapping[str, Mapping[str, Any]] | None = elements("fields of shift elements by name, without ports")
     drag: Mapping[str, Mapping[str, Any]] | None = elements(
         "fields of an element beside each, the drag of its open plates: a wet_drag where no type is given"

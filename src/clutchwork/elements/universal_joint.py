@@ -29,7 +29,7 @@ class UniversalJoint(Component):
 
     work: ClassVar[Work] = Work(0)
 
-    base: Node = port("shaft that the angle is counted of")
+    base: Node = port("shaft whose angle it is")
     follower: Node = port("shaft at an angle to it")
     support: Node | None = port("member that carries both and takes the reaction", default=None)
     bend_angle: float = param("rad", "angle between the shafts", at_least=0.0, below=pi / 2, example=0.5)

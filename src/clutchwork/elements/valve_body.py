@@ -47,7 +47,7 @@ class ValveBody(Component):
     pressures: Mapping[str, float] | None = named(
         "Pa", "pressure at the start by element, of those not empty", above=0.0
     )
-    line_pressure: SignalLike = signal("Pa", "wanted pressure of the line", default=1.2e6, at_least=0.0)
+    line_pressure: SignalLike = signal("Pa", "commanded pressure of the line", default=1.2e6, at_least=0.0)
     displacement: float = param("m3", "oil of the pump per turn", default=2e-5, above=0.0)
     efficiency: float = param("1", "hydraulic torque over torque of the pump", default=0.9, above=0.0, at_most=1.0)
     drag: float = param("N m s/rad", "torque per speed of the pump without pressure", default=2e-3, at_least=0.0)

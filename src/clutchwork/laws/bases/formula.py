@@ -18,7 +18,7 @@ from clutchwork.declare.pints import powers_of as powers_of_pint
 from clutchwork.declare.schema import specs
 from clutchwork.laws.bases.dimensions import mistakes_of_units
 from clutchwork.laws.bases.expression import FUNCTIONS, INPUTS, PRESSURE, SLIP, TEMPERATURE
-from clutchwork.laws.bases.program import Program, Texts, compiled
+from clutchwork.laws.bases.program import OPERATIONS, Program, Texts, compiled
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence
@@ -54,6 +54,7 @@ class FormulaLaw(Law):
     # a call may have numbers of any name
     takes_numbers: ClassVar[bool] = True
     numbers: ClassVar[tuple[Number, ...]] = ()
+    code_words: ClassVar[tuple[str, ...]] = OPERATIONS  # by whose numbers the core reads its code
     written: ClassVar[type | None] = None  # what it was made from, with a field for each number
 
     expression: str = formula(
