@@ -87,7 +87,7 @@ class Wiring:
     links: tuple[Link, ...] = ()
     sensors: tuple[Branch, ...] = ()
     sums: Mapping[str, tuple[str, ...]] = field(default_factory=dict)
-    unused: frozenset[str] = frozenset()  # inputs of features that nobody asked for
+    unused: frozenset[str] = frozenset()  # inputs of unused features
     composites: tuple[Component, ...] = ()  # those with signals of their own
 
     @property

@@ -160,7 +160,7 @@ def _twice(unknowns: Sequence[Variable]) -> Iterable[str]:
 
 
 def _scattered(unknowns: Sequence[Variable], scatter: Sequence[Variable]) -> Iterable[str]:
-    """Numbers that are free, and set by the scatter all the same."""
+    """Numbers that are free although the scatter sets them."""
     free = {name for one in unknowns for name in one.numbers}
     for one in scatter:
         if one.kind == VALUE and one.name in free:

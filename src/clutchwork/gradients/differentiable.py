@@ -239,7 +239,7 @@ def differentiable(
 def made(
     system: System, of: Any, by: Any, t_end: float, options: Options, threads: int | None, side: Any = None
 ) -> Differentiable:
-    """The function for what is asked for."""
+    """The function for the requested outputs."""
     if side is not None and side not in SIDES:
         raise UseError("gradient", [f"side is {quote(side)}: give 'left' or 'right', or leave it out"])
     if options.method == "fixed":

@@ -1,4 +1,4 @@
-"""What is asked of a run, as values and how they change: one measure for each number of each output."""
+"""Requested values of a run and how they change: one measure for each number of each output."""
 
 from __future__ import annotations
 

@@ -35,17 +35,17 @@ class NaturalMode:
 
     @property
     def frequency(self) -> float:
-        """Frequency at which it swings [Hz]; zero where it does not swing."""
+        """Frequency of its oscillation [Hz]; zero if it does not oscillate."""
         return abs(self.eigenvalue.imag) / (2.0 * math.pi)
 
     @property
     def natural_frequency(self) -> float:
-        """Frequency at which it would swing undamped [Hz]."""
+        """Undamped frequency [Hz]."""
         return abs(self.eigenvalue) / (2.0 * math.pi)
 
     @property
     def damping(self) -> float:
-        """Damping ratio: 1 where it does not swing and dies away, below zero where it grows; NaN of a free motion."""
+        """Damping ratio: 1 if it decays without oscillation, below zero if it grows; NaN of a free motion."""
         size = abs(self.eigenvalue)
         return -self.eigenvalue.real / size if size > 0.0 else math.nan
 
@@ -91,7 +91,7 @@ class NaturalModes(Sequence[NaturalMode]):
 
     @property
     def swinging(self) -> tuple[NaturalMode, ...]:
-        """Those that swing."""
+        """Those that oscillate."""
         return tuple(mode for mode in self if mode.frequency > 0.0)
 
     def __str__(self) -> str:

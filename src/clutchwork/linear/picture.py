@@ -26,7 +26,7 @@ MOST_MODES, MOST_SHAFTS = 6, 24
 
 
 def picture(lin: LinearSystem, path: str | Path | None = None) -> Figure:
-    """Eigenvalues on the left, shapes of the slowest modes that swing on the right; written to `path` when given."""
+    """Eigenvalues on the left, shapes of the slowest oscillating modes on the right; written to `path` when given."""
     shapes = [mode for mode in lin.modes.swinging if mode.shape][:MOST_MODES]
     shapes = shapes or [mode for mode in lin.modes if mode.shape][:MOST_MODES]
     with figure_of(max(LEAST_HEIGHT, 14.0 + PANEL * len(shapes)), formulas=False) as figure:

@@ -144,7 +144,7 @@ def _system(about: Mapping[str, Any], model: list[bytes], path: str | Path) -> S
         if not model[1]:
             return System.from_bytes(model[0], str(about["system"]))
         with warnings.catch_warnings():
-            # whoever saved the run was warned
+            # the warning was given when the run was saved
             warnings.simplefilter("ignore", ModelWarning)
             return System.of_parts(model, str(path))
     except SystemFormatError as error:

@@ -73,7 +73,7 @@ class Job:
 
         wanted = np.sort(np.atleast_1d(np.asarray(instants(times), dtype=float)))
         with warnings.catch_warnings():
-            # whoever has the run was warned
+            # the owner of the run was warned
             warnings.simplefilter("ignore", StoppedEarly)
             made = trajectory(replace(self, options=self.options.changed({"times": wanted, "dt": None})), None)
         if not made.finished and len(made) < len(wanted):
@@ -140,7 +140,7 @@ def simulate(
 
 
 def _followed(progress: Any, begin: float, t_end: float) -> AbstractContextManager[Told | None]:
-    """What takes the time that is reached; None where nobody asked."""
+    """Callback for the time reached; None if no progress was requested."""
     if progress is None:
         return nullcontext()
     from clutchwork.base.progress import MEASURED, followed

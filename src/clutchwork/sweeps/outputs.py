@@ -220,7 +220,7 @@ class When:
 
 @dataclass(frozen=True)
 class Computed:
-    """What a Python function makes of a run."""
+    """The result of a Python function of a run."""
 
     function: Callable[[Trajectory], Any]
     name: str

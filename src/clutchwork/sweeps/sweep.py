@@ -76,4 +76,4 @@ def sweep(
 
 
 def _silent(done: int) -> None:
-    """Nobody asked."""
+    """No progress was requested."""
