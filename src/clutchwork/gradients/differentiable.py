@@ -20,6 +20,7 @@ from clutchwork.gradients.exact import Exact
 from clutchwork.gradients.parameters import parameters
 from clutchwork.gradients.settled import SIDES
 from clutchwork.gradients.task import GradientTask, GradientValues
+from clutchwork.laws.bases.formula import FormulaLaw
 from clutchwork.results.channels import channels
 from clutchwork.results.gradient import Gradient
 from clutchwork.run.control import controllers
@@ -278,6 +279,13 @@ def _refuse(system: System, outputs: Mapping[str, Output]) -> None:
     problems += [
         f"{one.name} is set by a Python function or an FMU, which has no derivative; take a table of what it gives"
         for one in controllers(system.inputs)
+    ]
+    laws = ((contact.name, contact.friction) for contact in system.contacts)
+    jumps = ((name, law.jump()) for name, law in laws if isinstance(law, FormulaLaw))
+    problems += [
+        f"{name}.friction {jump}, where no event is, so that derivatives would be wrong; make it continuous"
+        for name, jump in jumps
+        if jump
     ]
     if problems:
         raise UseError("gradient", problems)

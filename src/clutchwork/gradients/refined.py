@@ -1,7 +1,7 @@
 """Steps in which a signal bends or jumps without an event, which polynomials miss, so that they are split there.
 
-A contact of a dependent set reaches its capacity, or a capacity depends on the direction of its torque, which turns
-round. docs/theory/gradients.md (19)
+A contact of a dependent set reaches its capacity, or a capacity depends on the direction of its torque, which reverses.
+docs/theory/gradients.md (19)
 """
 
 from __future__ import annotations

@@ -7,7 +7,8 @@ from typing import TYPE_CHECKING, Any, ClassVar
 
 from clutchwork.declare import Role, State, component, formula
 from clutchwork.laws.bases.expression import SLIP
-from clutchwork.laws.bases.formula import NAME, SLIPS, TAKEN, FormulaLaw, Found, no_number, where
+from clutchwork.laws.bases.formula import NAME, SLIPS, TAKEN, FormulaLaw, Found, no_number
+from clutchwork.laws.bases.jumps import where
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -59,6 +60,9 @@ class DynamicFormula(FormulaLaw):
     def own_states(self) -> tuple[State, ...]:
         """One state for each rate, by its name."""
         return tuple(State(name, "1", "state of the formula", span=SPAN) for name in self.rate_texts())
+
+    def slips(self) -> tuple[float, ...]:
+        return (*(-slip for slip in SLIPS[:0:-1]), *SLIPS)
 
     def problems(self) -> Found:
         rates: Any = self.rates

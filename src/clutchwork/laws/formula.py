@@ -6,7 +6,8 @@ from typing import TYPE_CHECKING
 
 from clutchwork.declare import Role, component
 from clutchwork.laws.bases.expression import SLIP
-from clutchwork.laws.bases.formula import ROUND_OFF, SLIPS, FormulaLaw, Found, no_number, where
+from clutchwork.laws.bases.formula import ROUND_OFF, SLIPS, FormulaLaw, Found, no_number
+from clutchwork.laws.bases.jumps import where
 
 if TYPE_CHECKING:
     from collections.abc import Iterator

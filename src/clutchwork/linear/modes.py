@@ -56,12 +56,12 @@ class NaturalMode:
 
     @property
     def kind(self) -> str:
-        """In one word: swings, dies away, grows or free."""
+        """In one word: oscillates, decays, grows or free."""
         if self.eigenvalue == 0.0:
             return "free"
         if self.eigenvalue.imag:
-            return "swings, grows" if self.eigenvalue.real > 0.0 else "swings"
-        return "grows" if self.eigenvalue.real > 0.0 else "dies away"
+            return "oscillates, grows" if self.eigenvalue.real > 0.0 else "oscillates"
+        return "grows" if self.eigenvalue.real > 0.0 else "decays"
 
     def __repr__(self) -> str:
         """As a list shows it."""
@@ -181,13 +181,13 @@ def _clean(value: complex) -> complex:
 
 
 def _line(number: int, mode: NaturalMode) -> tuple[str, ...]:
-    swings = mode.frequency > 0.0
+    oscillates = mode.frequency > 0.0
     return (
         str(number),
         mode.kind,
-        f"{mode.frequency:.4g} Hz" if swings else "",
-        f"{mode.natural_frequency:.4g} Hz" if swings else "",
-        f"{100.0 * mode.damping:.3g} %" if swings else "",
+        f"{mode.frequency:.4g} Hz" if oscillates else "",
+        f"{mode.natural_frequency:.4g} Hz" if oscillates else "",
+        f"{100.0 * mode.damping:.3g} %" if oscillates else "",
         f"{mode.time_constant:.4g} s" if math.isfinite(mode.time_constant) else "",
         _moving(mode, 5),
     )

@@ -17,7 +17,8 @@ from clutchwork.declare.pints import is_quantity
 from clutchwork.declare.pints import powers_of as powers_of_pint
 from clutchwork.declare.schema import specs
 from clutchwork.laws.bases.dimensions import mistakes_of_units
-from clutchwork.laws.bases.expression import FUNCTIONS, INPUTS, PRESSURE, SLIP, TEMPERATURE
+from clutchwork.laws.bases.expression import FUNCTIONS, INPUTS, PRESSURE, TEMPERATURE
+from clutchwork.laws.bases.jumps import first_jump, where
 from clutchwork.laws.bases.program import OPERATIONS, Program, Texts, compiled
 
 if TYPE_CHECKING:
@@ -132,7 +133,21 @@ class FormulaLaw(Law):
 
     def advice(self) -> Found:
         spare = [name for name in INPUTS[1:] if getattr(self, name) is not None and not self.reads(name)]
-        return [(name, "is in no expression", "remove it, or use it in an expression") for name in spare]
+        found = [(name, "is in no expression", "remove it, or use it in an expression") for name in spare]
+        jump = self.jump()
+        if jump:
+            remedy = "make it continuous, or take a FrictionTable, whose points end steps"
+            found.append(("expression", f"{jump}, where no step ends and gradients do not exist", remedy))
+        return found
+
+    def jump(self) -> str:
+        """Where it jumps, in words, within the inputs at which it is checked; empty: nowhere."""
+        program, _ = self._program
+        return "" if program is None else first_jump(program, self.places(program), self.slips())
+
+    def slips(self) -> tuple[float, ...]:
+        """Slips at which it is checked, rising."""
+        return SLIPS
 
     def values(self) -> dict[str, float]:
         """Its numbers by name."""
@@ -165,14 +180,6 @@ def no_number(program: Program, registers: Sequence[float], at: Mapping[str, flo
         return []
     remedy = "keep it away from division by zero, and from roots, logarithms and powers of negative numbers"
     return [(source.field, f"has no finite value in {source} {where(program, at)}", remedy)]
-
-
-def where(program: Program, at: Mapping[str, float]) -> str:
-    """Values of the inputs in words: "at a slip of 3 rad/s and 400 K"."""
-    said = [f"a slip of {at.get(SLIP, 0.0):g} rad/s"]
-    said += [f"{at[TEMPERATURE]:g} K"] if TEMPERATURE in program.reads else []
-    said += [f"{at[PRESSURE]:g} Pa"] if PRESSURE in program.reads else []
-    return f"at {' and '.join(said)}"
 
 
 def _unread(law: FormulaLaw, program: Program) -> Found:
