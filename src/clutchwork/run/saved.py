@@ -27,7 +27,7 @@ from clutchwork.declare.layout import MODES, STATUSES
 from clutchwork.declare.options import Options
 from clutchwork.declare.wording import say
 from clutchwork.results.channels import channels
-from clutchwork.results.events import Event, Events
+from clutchwork.results.events import Event, Events, contact_domains
 from clutchwork.results.state import State
 from clutchwork.run.control import Control
 from clutchwork.run.input_schedule import Schedule, Tape
@@ -167,4 +167,4 @@ def _rows(system: System, parts: archive.ArchiveParts, count: int) -> Array:
 def _events(system: System, lines: Any) -> Events:
     kinds: list[type] = [float if kind == "float" else str for kind in Event.__annotations__.values()]
     made = [Event(*(kind(value) for kind, value in zip(kinds, line, strict=True))) for line in lines]
-    return Events(made, [contact.name for contact in system.contacts])
+    return Events(made, contact_domains(system))

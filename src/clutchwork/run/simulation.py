@@ -21,7 +21,7 @@ from clutchwork.base.quote import quote
 from clutchwork.declare.calls import explained
 from clutchwork.declare.layout import DONE, INTERRUPTED, NOT_FINITE, REFUSED, STATUSES
 from clutchwork.declare.options import Options, instants
-from clutchwork.results.events import from_rows
+from clutchwork.results.events import contact_domains, from_rows
 from clutchwork.run.begin import advance, begun, reach, row_of, state_of
 from clutchwork.run.control import Control, controllers, guests_of, refuse_guests
 from clutchwork.run.jumps import jump_times
@@ -330,7 +330,7 @@ def _named(job: Job, recording: Recording, seconds: float) -> Trajectory:
         t_end=job.t_end,
         time=recording.times,
         rows=recording.rows,
-        events=from_rows(recording.events, [contact.name for contact in system.contacts]),
+        events=from_rows(recording.events, contact_domains(system)),
         status=STATUSES[status],
         message=message,
         repeat=job.again,
