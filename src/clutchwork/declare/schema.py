@@ -258,7 +258,7 @@ def signal(
 
 
 def formula(doc: str, *, default: None = MISSING, kw_only: bool = True, example: Any = None) -> Any:  # type: ignore[assignment]
-    """An expression, or several by name: a `Curve` of the C++ `Params` with the words that the law makes of it."""
+    """An expression, or several by name: a `Curve` of the C++ `Params` with the code words of the law."""
     return _field(Spec("formula", "1", doc, default is None, example=example), default, kw_only)
 
 

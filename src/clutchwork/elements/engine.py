@@ -91,7 +91,7 @@ class Engine(Component):
     )
     amplitudes: Sequence[float] | None = numbers("1", "amplitude of each over the burning part", default=None)
     phases: Sequence[float] | None = numbers("rad", "phase of each, none: 0", default=None)
-    stall_speed: float = param("rad/s", "speed below which nothing burns", default=0.0, at_least=0.0)
+    stall_speed: float = param("rad/s", "speed below which there is no combustion", default=0.0, at_least=0.0)
     initial_throttle: float = option("1", "lagged throttle at the start", default=0.0, at_least=0.0)
     initial_idle: float = option("1", "integral of the idle control at the start", default=0.0, at_least=0.0)
     initial_boost: float = option("1", "share of the full boost at the start", default=0.0, at_least=0.0)

@@ -63,7 +63,7 @@ class EngineTorque(Component):
     deficit: Sequence[float] = numbers(
         "N m", "torque that full boost adds at full throttle, one for each speed", example=(0.0, 1.0, 2.0)
     )
-    stall_speed: float = param("rad/s", "speed below which nothing burns", default=0.0, at_least=0.0)
+    stall_speed: float = param("rad/s", "speed below which there is no combustion", default=0.0, at_least=0.0)
     lag: float = param(
         "s", "time constant of the throttle, 0: none", default=0.0, at_least=0.0, fixed=True, example=0.1
     )
