@@ -89,8 +89,9 @@ def test_units_that_do_not_fit(text: str, told: str) -> None:
 
 
 def test_masses_slip_in_metres_per_second() -> None:
-    assert mistakes(cw.Formula("mu*exp(-v/w)", mu=0.3, w="1 m/s")) == []
-    assert mistakes(cw.Formula("mu*exp(-v/w)", mu=0.3, w="1 m")) != []
+    # which of both it is, the contact knows
+    assert cw.Formula("mu*exp(-v/w)", mu=0.3, w="1 m/s").problems() == []
+    assert cw.Formula("mu*exp(-v/w)", mu=0.3, w="1 m").problems() != []
 
 
 def test_numbers_in_units_of_the_other_kind_of_motion_are_refused() -> None:
@@ -119,7 +120,9 @@ def test_numbers_in_units_of_the_other_kind_of_motion_are_refused() -> None:
     ],
 )  # fmt: skip
 def test_a_formula_that_jumps_is_warned_of_and_has_no_gradient(text: str, told: str) -> None:
-    given: dict[str, Any] = {"temperature": cw.Ramp(offset=300.0, height=100.0)} if "temperature" in text else {}
+    given: dict[str, Any] = (
+        {"temperature": cw.Ramp(offset=300.0, height=100.0, duration=1.0)} if "temperature" in text else {}
+    )
     law = cw.Formula(text, knee=3.0, at_rest="0.6*knee/3", **given)
     d = cw.Driveline("brake")
     d.add(cw.Brake("b", shaft=d.shaft("a", inertia=1.0, speed=10.0), friction=law, gain=1.0, normal_force=10.0))

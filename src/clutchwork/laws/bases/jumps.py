@@ -42,11 +42,12 @@ def first_jump(program: Program, places: Sequence[Mapping[str, float]], slips: S
         if seen(before)[0] == seen(after)[0]:
             continue
         low, high = before, after
+        sizes = [max(abs(a), abs(b)) for a, b in zip(seen(before)[1], seen(after)[1], strict=True)]
         for _ in range(HALVINGS):
             middle = {name: 0.5 * (low[name] + high[name]) for name in low}
             low, high = (middle, high) if seen(middle)[0] == seen(before)[0] else (low, middle)
-        for one, other in zip(seen(low)[1], seen(high)[1], strict=True):
-            if abs(one - other) > JUMP * max(abs(one), abs(other)):
+        for one, other, size in zip(seen(low)[1], seen(high)[1], sizes, strict=True):
+            if abs(one - other) > JUMP * max(abs(one), abs(other), size):
                 return f"jumps from {one:g} to {other:g} {where(program, high)}"
     return ""
 
