@@ -196,9 +196,9 @@ class Channels(Mapping[str, Channel]):
     def _state_sums(self) -> Iterator[tuple[str, Channel]]:
         """Signals that are weighted sums of states."""
         known = dict(self._state_columns())
-        owners = [*self._wiring.elements, *self._wiring.contacts, *self._wiring.processes]
-        components = [*(one.component for one in owners if not getattr(one, "number", 0)), *self._wiring.composites]
-        for component in components:
+        branches = [branch for branch in (*self._wiring.elements, *self._wiring.contacts) if not branch.number]
+        owners = (*(branch.component for branch in branches), *(one.component for one in self._wiring.processes))
+        for component in (*owners, *self._wiring.composites):
             for one in component.state_sums():
                 terms = [(*known[f"{component.name}.{name}"], weight) for name, weight in one.weights.items()]
                 yield f"{component.name}.{one.name}", Channel(one.unit, self._sum(terms, one.offset))

@@ -43,7 +43,7 @@ def times(*factors: Any) -> Factors:
             what = f"{quote(wrong[0])} is not a factor" if wrong else "there are no factors"
             raise UseError("times", [f"{what}; give numbers without a unit, such as cw.times(0.9, 1.1)"])
         how = [float(one) for one in how]
-    elif isinstance(how, str) or getattr(how, "unit", ""):
+    elif isinstance(how, str) or getattr(how, "unit", None):
         raise UseError("times", [f"{quote(how)} is not a factor; give numbers without a unit"])
     return Factors(how)
 

@@ -175,7 +175,8 @@ class FeltJerk:
         """Instants a small part of a window apart, at which a run gives the speed [s]; none if it is too short."""
         (first, last), step = self.inside(begin, end), self.window / PER_WINDOW
         count = -1 if self.is_too_long(begin, end) else int((last - first) / step * (1.0 + 1e-12))
-        return np.minimum(first + step * np.arange(count + 1), last)
+        found: Array = np.minimum(first + step * np.arange(count + 1), last)
+        return found
 
     def felt(self, speeds: Array) -> Array:
         """The jerk from speeds at these instants, with its sign: docs/theory/jerk.md (1)."""
