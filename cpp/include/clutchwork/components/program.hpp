@@ -51,6 +51,29 @@ CLUTCHWORK_INLINE S bell(const S& x) {
 template <class S>
 using Operand = std::conditional_t<std::is_floating_point_v<S>, S, const S&>;
 
+/// Functions that take far longer than to find them.
+template <class S>
+CLUTCHWORK_INLINE S function_of(Operation which, Operand<S> a, Operand<S> b) {
+  switch (which) {
+    case Operation::power:
+      return power_of(a, b);
+    case Operation::root:
+      return root_of(a);
+    case Operation::log:
+      return log(a);
+    case Operation::tanh:
+      return tanh(a);
+    case Operation::atan:
+      return atan(a);
+    case Operation::sin:
+      return sin(a);
+    case Operation::cos:
+      return cos(a);
+    default:
+      __builtin_unreachable();
+  }
+}
+
 /// What an instruction computes of the registers `a` and `b`; `word` says which instruction, `r` are all registers.
 template <class S>
 CLUTCHWORK_HOT S computed(std::size_t word, Operand<S> a, Operand<S> b, const S* r) {
@@ -79,10 +102,6 @@ CLUTCHWORK_HOT S computed(std::size_t word, Operand<S> a, Operand<S> b, const S*
       return smaller(a, b);
     case Operation::larger:
       return larger(a, b);
-    case Operation::power:
-      return power_of(a, b);
-    case Operation::root:
-      return root_of(a);
     case Operation::exp:
       return exp(a);
     case Operation::exp_behind:
@@ -93,24 +112,15 @@ CLUTCHWORK_HOT S computed(std::size_t word, Operand<S> a, Operand<S> b, const S*
       return exp_behind(-a, b);
     case Operation::bell:
       return bell(a / b);
-    case Operation::log:
-      return log(a);
-    case Operation::tanh:
-      return tanh(a);
-    case Operation::atan:
-      return atan(a);
-    case Operation::sin:
-      return sin(a);
-    case Operation::cos:
-      return cos(a);
     case Operation::sign:
       return sign_of(a);
     case Operation::less:
       return select(a < b, S(1), S(0));
     case Operation::pick:
       return select(value(r[word / words_per_operation]) != 0, a, b);
+    default:
+      return function_of<S>(Operation(word % words_per_operation), a, b);
   }
-  __builtin_unreachable();
 }
 
 /// The words of a formula in the pool of points, and the numbers that it names, which stand behind the parameters of
