@@ -118,7 +118,7 @@ class Doubts:
         return bool(self.run.primal.bends_at(line.columns, np.array([line.at]))[0])
 
     def _ends_at_knot(self, time: float) -> bool:
-        """Whether the run ends at an instant, and a knot that moves is there: nobody sees whether it bends."""
+        """Whether the run ends at the instant of a moving knot, whose bend is not visible."""
         is_end = time >= self.run.primal.t_end * (1.0 - SAME)
         return is_end and bool(np.any(np.abs(self.point.knots.meets - time) <= SAME * (1.0 + abs(time))))
 

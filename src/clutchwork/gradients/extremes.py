@@ -44,7 +44,7 @@ PLACES = np.vander(np.arange(17) * WIDTH, PARTS + 1, increasing=True)
 
 
 class Located(NamedTuple):
-    """Where an extreme is: its value, its step, the place in it, and its sign in what is asked for."""
+    """Where an extreme is: its value, its step, the place in it, and its sign in the output."""
 
     value: float
     step: int
@@ -52,7 +52,7 @@ class Located(NamedTuple):
     sign: float
     rough: float = 0.0  # last coefficient of the polynomial over the length of the step, of which slopes are off
     is_flat: bool = False  # all of the step is as large
-    is_level: bool = False  # but for round-off
+    is_level: bool = False  # except for round-off
     # whether all values from the begin of the step to it, and from it to the end, are as large
     holds: tuple[bool, bool] = (False, False)
 
@@ -104,7 +104,7 @@ class CandidateSteps(NamedTuple):
 
 
 def _near(one: Extreme, steps: Steps, values: Array) -> Iterator[CandidateSteps]:
-    """For each sign of what is asked for the steps that may reach its largest value."""
+    """For each sign of the output the steps that may reach its largest value."""
     coefficients = np.einsum("nki,ni->nk", steps.basis, values)
     samples = coefficients @ PLACES.T
     # between samples a polynomial rises by less than an eighth of its second difference

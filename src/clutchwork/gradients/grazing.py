@@ -124,7 +124,7 @@ def jumping_together(system: System, grazes: Array, sizes: float) -> Iterator[tu
 
 
 def crowded(events: Array, contacts: Sequence[str]) -> Iterator[tuple[float, str]]:
-    """Contacts that lock and let go again and again within an instant, which no derivative survives."""
+    """Contacts that lock and break away repeatedly within an instant, where no derivative exists."""
     if len(events) < CROWD:
         return
     changed = _locking(events)
@@ -163,7 +163,7 @@ def _struck(hit: Array, contacts: Sequence[str]) -> Iterator[tuple[float, str]]:
 def decided_at_knots(
     events: Array, grazes: Array, knots: Array, contacts: Sequence[str]
 ) -> Iterator[tuple[float, str]]:
-    """Contacts that lock or let go where a signal bends: what comes first, the knot or the event, is open.
+    """Contacts that lock or break away where a signal bends: whether the knot or the event comes first is undecided.
 
     Parameters: knots, instants of all [s]. Where a signal jumps the knot is what makes them do so.
     """

@@ -82,7 +82,7 @@ class Runs:
 
     @cached_property
     def wanted(self) -> CoreOutputs:
-        """What is asked of each run."""
+        """The requested outputs of each run."""
         return CoreOutputs.of(self.task.system, self.task.options, self.task.outputs, self.task.t_end)
 
     @cached_property

@@ -41,6 +41,12 @@ CLUTCHWORK_INLINE S exp_behind(const S& x, const S& slip) {
   return exp(select(slip < S(0), smaller(x, S(20)), x));
 }
 
+/// The fall of a Stribeck curve.
+template <class S>
+CLUTCHWORK_INLINE S bell(const S& x) {
+  return exp(-(x * x));
+}
+
 /// A register that is read: what fits a register of the processor is there at once.
 template <class S>
 using Operand = std::conditional_t<std::is_floating_point_v<S>, S, const S&>;
@@ -57,6 +63,10 @@ CLUTCHWORK_HOT S computed(std::size_t word, Operand<S> a, Operand<S> b, const S*
       return r[word / words_per_operation] + a * b;
     case Operation::subtract_product:
       return r[word / words_per_operation] - a * b;
+    case Operation::add_quotient:
+      return r[word / words_per_operation] + a / b;
+    case Operation::subtract_quotient:
+      return r[word / words_per_operation] - a / b;
     case Operation::multiply:
       return a * b;
     case Operation::divide:
@@ -81,6 +91,8 @@ CLUTCHWORK_HOT S computed(std::size_t word, Operand<S> a, Operand<S> b, const S*
       return exp(-a);
     case Operation::fade_behind:
       return exp_behind(-a, b);
+    case Operation::bell:
+      return bell(a / b);
     case Operation::log:
       return log(a);
     case Operation::tanh:
