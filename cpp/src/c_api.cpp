@@ -218,6 +218,24 @@ int cw_leave_out(cw_run* run, int angles, int work) {
   return 1;
 }
 
+int cw_read_inside(cw_run* run, const std::int64_t* columns, std::int64_t n) {
+  if (run == nullptr || (n > 0 && columns == nullptr)) return 0;
+  const RowLayout& row = run->ws.row;
+  unsigned parts = 0;
+  for (std::int64_t i = 0; i < n; ++i) {
+    const std::int64_t at = columns[i];
+    const bool node = at < row.state && (at < row.angle || at >= row.acceleration);
+    if (at < 0 || at >= row.size) return 0;
+    parts |= node                                                ? RowPart::motion
+             : at >= row.state && at < row.element_torque        ? RowPart::state
+             : at >= row.element_torque && at < row.element_work ? RowPart::torque
+             : at >= row.input                                   ? RowPart::input
+                                                                 : RowPart::other;
+  }
+  run->ws.out.inside = parts;
+  return 1;
+}
+
 int cw_set_param(cw_run* run, std::int64_t offset, double value) {
   if (run == nullptr || !is_finite(value)) return 0;
   Workspace<double>& ws = run->ws;

@@ -2,6 +2,7 @@
 
 #include <nanobind/nanobind.h>
 #include <nanobind/ndarray.h>
+#include <nanobind/stl/optional.h>
 #include <nanobind/stl/string.h>
 #include <nanobind/stl/tuple.h>
 #include <nanobind/stl/vector.h>
@@ -52,8 +53,11 @@ void check(const Task& task) {
 
 /// Rows of the first system have as many numbers as those of all.
 void check_columns(const Task& task, std::int64_t row_size) {
-  for (std::int64_t c = 0; c < task.width; ++c)
-    if (task.columns[c] < 0 || task.columns[c] >= row_size) throw nb::index_error("a column is not in the rows");
+  const auto refuse = [&](std::int64_t column) {
+    if (column < 0 || column >= row_size) throw nb::index_error("a column is not in the rows");
+  };
+  for (std::int64_t c = 0; c < task.width; ++c) refuse(task.columns[c]);
+  for (std::int64_t column : task.inside) refuse(column);
 }
 
 std::int64_t row_size_of(const Bytes& system) {
@@ -68,7 +72,7 @@ std::int64_t row_size_of(const Bytes& system) {
 /// Status, details and rows of a grid, what each thread found, and what a signal handler or `progress` raised, or None.
 nb::tuple sweep(std::vector<nb::bytes> systems, std::vector<std::tuple<Whole, Words>> axes, Lines choice,
                 std::vector<Option> options, double t_end, Numbers times, int parts, Whole columns, bool events,
-                int threads, nb::object progress, std::tuple<int, int> lacks) {
+                int threads, nb::object progress, std::tuple<int, int> lacks, std::optional<Whole> inside) {
   Task task{};
   for (const nb::bytes& system : systems) task.systems.push_back({system.c_str(), std::int64_t(system.size())});
   for (const auto& [place, words] : axes) {
@@ -83,6 +87,9 @@ nb::tuple sweep(std::vector<nb::bytes> systems, std::vector<std::tuple<Whole, Wo
   task.columns = columns.data(), task.width = std::int64_t(columns.shape(0)), task.events = events;
   task.lacks_angles = std::get<0>(lacks), task.lacks_work = std::get<1>(lacks);
   check(task);
+  const std::int64_t size = row_size_of(task.systems[0]);
+  for (std::int64_t c = 0; c < (inside ? std::int64_t(inside->shape(0)) : size); ++c)
+    task.inside.push_back(inside ? inside->data()[c] : c);
   for (const Bytes& system : task.systems) check_columns(task, row_size_of(system));
 
   const auto variants = std::size_t(task.variants);
@@ -124,5 +131,6 @@ void bind_sweep(nb::module_& m) {
   m.def("sweep", &sweep, nb::arg("systems"), nb::arg("axes"), nb::arg("choice"), nb::arg("options"), nb::arg("t_end"),
         nb::arg("times"), nb::arg("parts"), nb::arg("columns"), nb::arg("events"), nb::arg("threads"),
         nb::arg("progress").none(), nb::arg("lacks") = std::tuple<int, int>(0, 0),
+        nb::arg("inside") = nb::none(),
         "Runs of many variants of one system, on several threads.");
 }

@@ -43,7 +43,8 @@ struct Task {
   const std::int64_t* columns;   ///< numbers of a row that are kept
   std::int64_t width;            ///< how many
   bool events;                   ///< whether they are kept
-  int lacks_angles, lacks_work;  ///< what rows need not have: cw_leave_out
+  int lacks_angles, lacks_work;      ///< what rows need not have: cw_leave_out
+  std::vector<std::int64_t> inside;  ///< what is read of rows inside of steps: cw_read_inside
 };
 
 /// Numbers that tell why a run stopped: component, time, value, number of the row.
@@ -86,7 +87,9 @@ class Worker {
   Found found;
 
  private:
-  static constexpr std::int64_t event_room = 256, step_room = 256;
+  static constexpr std::int64_t event_room = 256;
+  // rows in steps before they are taken away: a group goes on together the longer the more there are
+  static constexpr std::int64_t least_rows = 256, most_rows = 1024, most_numbers = 100'000;
 
   struct alignas(64) Block {
     unsigned char byte[64];
@@ -152,6 +155,7 @@ class Worker {
     }
     for (const auto& [name, value] : task_.options) cw_set_option(p.run, name.c_str(), value);
     cw_leave_out(p.run, task_.lacks_angles, task_.lacks_work);
+    cw_read_inside(p.run, task_.inside.data(), std::int64_t(task_.inside.size()));
     cw_set_poll(p.run, &Course::stopped, &course_);
     for (std::int64_t i = 0; i < task_.instants && task_.parts == 0; ++i) p.times[std::size_t(i)] = task_.times[i];
     return true;
@@ -185,7 +189,8 @@ class Worker {
 
   void make_room(Place& p, std::int64_t row_size) {
     p.row_size = row_size;
-    const std::int64_t rows = task_.parts > 0 ? step_room + task_.parts : task_.instants;
+    const std::int64_t rows = task_.parts > 0 ? task_.parts + std::clamp(most_numbers / std::max(row_size, std::int64_t(1)), least_rows, most_rows)
+                        : task_.instants;
     p.times.resize(std::size_t(rows));
     p.rows.resize(std::size_t(rows * row_size));
   }

@@ -60,6 +60,11 @@ int cw_expect_inputs(cw_run* run, int expected);
    rows but those inside of steps. It is not part of a saved state. 1: set; 0: no run. */
 int cw_leave_out(cw_run* run, int angles, int work);
 
+/* Which numbers of a row are read of rows in steps in which nothing happens; the others may stay as they were in rows of
+   cw_advance_group. Rows at both ends of the run and beside events, knots and jumps have all. It is not part of a saved
+   state. 1: set; 0: no run, or a number that no row has. */
+int cw_read_inside(cw_run* run, const int64_t* columns, int64_t n);
+
 /* A number of the parameter pool, before the run starts or between calls. 1: set; 0: no such number, the value is not
    finite, or the number is fixed because it locates a curve or selects a variant, such as an extrapolation. */
 int cw_set_param(cw_run* run, int64_t offset, double value);

@@ -224,10 +224,10 @@ class Batch:
         systems = [system.to_bytes() for system in call.systems]
         threads = min(self.way.threads, max(1, len(call.who) // 2))
         columns, events = np.array(forms.columns, dtype=np.int64), self.wanted.events
-        lacked = lacks(call.systems[0].counts, forms.columns, forms.inside, parts)
+        read = lacks(call.systems[0].counts, forms.columns, forms.inside, parts), np.array(sorted(forms.inside), dtype=np.int64)
         return Native(
             *core().sweep(
-                systems, axes, choice, options, self.way.t_end, grid, parts, columns, events, threads, progress, lacked
+                systems, axes, choice, options, self.way.t_end, grid, parts, columns, events, threads, progress, *read
             )
         )
 

@@ -3,6 +3,7 @@
 #include <clutchwork/lanes/inputs.hpp>
 #include <clutchwork/run/guards/line.hpp>
 #include <clutchwork/run/guards/torques.hpp>
+#include <clutchwork/run/gauss.hpp>
 #include <clutchwork/run/integrator/rodas5p.hpp>
 #include <clutchwork/run/step.hpp>
 
@@ -25,6 +26,46 @@ CLUTCHWORK_INLINE Mask<R> doubtful_inline(const Workspace<Lanes<R>>& ws, const L
     if (ws.branch[k].sign == 0) clear = clear && abs(ws.step_end.rate[k]) <= 1e-10;
   }
   return !clear;
+}
+
+/// Whether nothing overflows where a step was observed: what a row tells of energy has the size of the squares.
+template <int R>
+CLUTCHWORK_INLINE Mask<R> is_sound(LaneForm<R>& form, Step<LaneForm<R>>& step) {
+  const Workspace<Lanes<R>>& ws = form.ws;
+  Lanes<R> square(0), sum(0);
+  for (int i = 0; i < form.nz(); ++i) square += step.point()[i] * step.point()[i];
+  for (int i = 0; i < form.n(); ++i) sum += step.point()[i] * 0 + step.slope()[i] * 0;
+  for (int k = 0; k < ws.n_branches; ++k) sum += ws.observed.torque[k] * 0;
+  for (int a = 0; a < ws.held.n; ++a) sum += ws.observed.carried[a] * 0;
+  return square + sum < 1e300;
+}
+
+/// Rates and torques at a share of the step of each lane.
+template <int R>
+[[gnu::noinline]] void observe_lanes(LaneForm<R>& form, Step<LaneForm<R>>& step, const Lanes<R>& s) {
+  interpolate(form, step, s, step.point());
+  observe(form, step.t + s * step.h, step.point(), step.slope());
+}
+
+/// Work of the branches over the step of each lane. docs/theory/energy.md
+template <int R>
+CLUTCHWORK_INLINE Mask<R> integrate_powers(LaneForm<R>& form, Step<LaneForm<R>>& step) {
+  Workspace<Lanes<R>>& ws = form.ws;
+  const int n = ws.n_branches;
+  for (int i = 0; i < 4 * n; ++i) ws.out.power[i] = 0;
+  for (int g = 0; g < 4; ++g) {
+    observe_lanes(form, step, Lanes<R>(gauss.node[g]));
+    for (int k = 0; k < n; ++k) {
+      const Lanes<R> power = ws.observed.torque[k] * ws.observed.rate[k];
+      for (int j = 0; j < 4; ++j) ws.out.power[j * n + k] += power * Lanes<R>(gauss.coef[g][j]);
+    }
+  }
+  Lanes<R> sum(0);
+  for (int k = 0; k < n; ++k) {
+    ws.out.work[k] = cubic_integral(ws.out.power + k, n, Lanes<R>(1), step.h);
+    sum += ws.out.work[k] * 0;
+  }
+  return sum == 0;
 }
 
 // out of line: what is inlined for one run is several times as long for eight
@@ -74,6 +115,21 @@ struct LaneStep {
     *static_cast<Mask<R>*>(doubtful) =
         doubtful_inline(static_cast<LaneForm<R>*>(form)->ws, static_cast<Step<LaneForm<R>>*>(step)->h);
   }
+  /// Torques at a share of the step of each lane, as a row has them, after `fit`; lanes in which all is finite.
+  static void observe(void* form, void* step, const void* share, void* sound) {
+    auto& f = *static_cast<LaneForm<R>*>(form);
+    auto& s = *static_cast<Step<LaneForm<R>>*>(step);
+    observe_lanes(f, s, *static_cast<const Lanes<R>*>(share));
+    multipliers(f.ws, f.ws.observed.torque, true, f.ws.observed.carried);
+    *static_cast<Mask<R>*>(sound) = is_sound(f, s);
+  }
+  /// Its interpolant; and where it is wanted the work of the branches over it, and lanes in which that is finite.
+  static void fit(void* form, void* step, bool work, void* sound) {
+    auto& f = *static_cast<LaneForm<R>*>(form);
+    auto& s = *static_cast<Step<LaneForm<R>>*>(step);
+    Rodas5P::prepare_dense(f, s);
+    *static_cast<Mask<R>*>(sound) = work ? integrate_powers(f, s) : Mask<R>(true);
+  }
 };
 
 /// The same as pointers: which one is taken depends on the processor.
@@ -81,6 +137,8 @@ struct LaneKernel {
   void (*advance)(void* form, void* step, void* error, void* finite);
   void (*linearize_at)(void* form, void* step, const void* times);
   void (*doubt)(void* form, void* step, void* doubtful);
+  void (*observe)(void* form, void* step, const void* share, void* sound);
+  void (*fit)(void* form, void* step, bool work, void* sound);
 };
 
 }  // namespace clutchwork

@@ -1,6 +1,7 @@
 #pragma once
 #include <clutchwork/lanes/exchange.hpp>
 #include <clutchwork/lanes/mode.hpp>
+#include <clutchwork/lanes/rows.hpp>
 #include <clutchwork/lanes/step.hpp>
 #include <clutchwork/run/phase.hpp>
 #include <clutchwork/run/step_size.hpp>
@@ -23,6 +24,7 @@ class Together {
   const int n_;      ///< speeds and states
   int n_active_ = 0;
   bool active_[n_lanes] = {}, counts_[n_lanes] = {}, visited_[n_lanes] = {};
+  bool alone_[n_lanes] = {};  ///< what happens in its step is left to its phase
 
  public:
   /// Phases that have begun, all in one mode; `first` is one of those that are there.
@@ -181,18 +183,69 @@ class Together {
   void settle() {
     Mask<2> doubtful;
     kernel_.doubt(&form_, &step_, &doubtful);
+    bool work = false;
+    int parts = 0;
+    for (int i = 0; i < n_lanes; ++i) {
+      alone_[i] = !active_[i] || !counts_[i] || doubtful[i] || is_left_alone(pace(i));
+      if (alone_[i]) continue;
+      work = work || has_work(run_of(i));
+      parts = larger(parts, int(pace(i).sink_.steps));
+    }
+    if (work || parts > 0) write(work, parts);
     for (int i = 0; i < n_lanes; ++i) {
       if (!active_[i] || !counts_[i]) continue;
-      StepSize<double>& one = pace(i);
-      if (doubtful[i] || has_work(one.ws_) || has_angles(one.ws_) || one.has_rows(1)) {
+      if (alone_[i]) {
         unload(i);
         phase_[i]->settle_given();
         visited_[i] = true;
       } else {
-        one.move_on();
+        pace(i).move_on();
       }
     }
     pass_on();
+  }
+
+  /// Whether what is wanted of a step is more than the lanes give.
+  static bool is_left_alone(const StepSize<double>& one) {
+    if (has_angles(one.ws_) || (has_work(one.ws_) && !sums_work_along(one.ws_))) return true;
+    if (!one.has_rows(1)) return false;
+    // rows at knots are compared with those behind them
+    return one.sink_.steps == 0 || one.cut_ || one.reach_ < shortest_with_rows * (1 + abs(one.end_of_step())) ||
+           !writes_along(one.ws_);
+  }
+  // far above what the time can tell apart
+  static constexpr double shortest_with_rows = 1e-11;
+
+  /// Work and rows of the steps in which nothing happens.
+  void write(bool work, int parts) {
+    Mask<2> sound(true);
+    kernel_.fit(&form_, &step_, work, &sound);
+    for (int i = 0; i < n_lanes; ++i) alone_[i] = alone_[i] || !sound[i];
+    for (int k = 1; k <= parts; ++k) {
+      Lanes<2> share(1);
+      double t[n_lanes];
+      for (int i = 0; i < n_lanes; ++i) {
+        if (!alone_[i] && k <= pace(i).sink_.steps) share[i] = pace(i).share_of_part(k, t[i]);
+      }
+      kernel_.observe(&form_, &step_, &share, &sound);
+      for (int i = 0; i < n_lanes; ++i) {
+        alone_[i] = alone_[i] || !sound[i];
+        if (alone_[i] || k > pace(i).sink_.steps) continue;
+        Sink& sink = pace(i).sink_;
+        sink.times[sink.at + k - 1] = t[i];
+        write_row(run_of(i), ws_, step_, i, t[i], sink.rows + run_of(i).row.size * (sink.at + k - 1));
+      }
+    }
+    for (int i = 0; i < n_lanes; ++i) {
+      if (alone_[i]) continue;
+      Workspace<double>& run = run_of(i);
+      if (has_work(run)) take_work(run, ws_, i);
+      if (pace(i).sink_.steps == 0) continue;
+      pace(i).sink_.at += pace(i).sink_.steps;
+      run.out.skipped = false, run.out.shown = end_[i];
+    }
+    // the lanes have the signals as they are at the ends
+    inputs_at(ws_, end_);
   }
 
   /// The end of the step is the start of the next one, but for those who have gone elsewhere.

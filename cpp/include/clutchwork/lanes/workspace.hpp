@@ -74,8 +74,11 @@ struct Workspace<Lanes<R>> {
   Stages<Lanes<R>> stages;
   StepEnd<Lanes<R>> step_start{}, step_end{};
   struct {
-    Lanes<R>*torque = nullptr, *drift = nullptr;
+    Lanes<R>*rate = nullptr, *torque = nullptr, *drift = nullptr, *carried = nullptr;
   } observed;
+  struct {
+    Lanes<R>*power = nullptr, *work = nullptr;  ///< of each branch over a step: as cubics, and its integral
+  } out;
   struct {
     LaneLine<R>* line = nullptr;
     int n_lines = 0, n_undirected = 0;
@@ -93,6 +96,8 @@ struct Workspace<Lanes<R>> {
     a.take(p.reduced.span, n.states), a.take(p.reduced.floor, n.states);
     a.take(p.reduced.size, n.speeds), a.take(p.reduced.missed, n.speeds);
     a.take(p.observed.torque, n.directions), a.take(p.observed.drift, n.directions);
+    a.take(p.observed.rate, n.directions), a.take(p.observed.carried, n.contacts);
+    a.take(p.out.power, 4 * n.directions), a.take(p.out.work, n.directions);
     a.take(p.guard.line, 3 * n.directions + n.contacts);
     a.take(p.contact.fault, n.contacts), a.take(p.contact.compliant, n.contacts);
     a.take(p.contact.bends, n.contacts), a.take(p.held.contact, n.contacts);
