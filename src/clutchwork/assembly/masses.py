@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from fractions import Fraction
 from functools import cached_property
+from itertools import pairwise
 from math import inf
 from typing import TYPE_CHECKING, Any
 
@@ -76,6 +77,22 @@ class Masses:
     def _order(self) -> list[int]:
         return order(self.inertia, self.wanted)
 
+    @cached_property
+    def _sizes(self) -> list[float]:
+        return list(map(float, self.inertia))
+
+    def _keeps_order(self, inertia: Sequence[Fraction], moved: Iterable[int]) -> bool:
+        """Whether the same speeds stay independent with other inertias at some places."""
+        sizes = self._sizes.copy()
+        for place in moved:
+            sizes[place] = float(inertia[place])
+        rest = self._order[: len(inertia) - len(self.wanted)]
+        # as `order` has them: floats mostly tell them apart
+        return all(
+            sizes[a] < sizes[b] or (sizes[a] == sizes[b] and (inertia[a], -a) < (inertia[b], -b))
+            for a, b in pairwise(rest)
+        )
+
     def patches(self, changes: Mapping[str, Any]) -> list[Patch] | None:
         """The words of other inertias; None where others change too.
 
@@ -90,7 +107,7 @@ class Masses:
             more = inertia[place] - self.inertia[place]
             for word, factor in self.shares[place].items():
                 sums[word] = sums.get(word, self.matrix[word]) + more * factor
-        if order(inertia, self.wanted) != self._order:
+        if not self._keeps_order(inertia, map(self.places.__getitem__, changes)):
             return None
         found = [Patch("inertia", self.places[name], [float(value)]) for name, value in changes.items()]
         for (array, place), total in sums.items():

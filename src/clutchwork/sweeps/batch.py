@@ -20,7 +20,7 @@ from clutchwork.results.channels import Channels, channels
 from clutchwork.results.forms import LOCKED, all_reads, is_of_structure
 from clutchwork.sweeps.axes import Plan, systems_of
 from clutchwork.sweeps.outputs import AtEnd, AtTimes, Computed, Extreme, Integral, Output, SquaredJerk, When
-from clutchwork.sweeps.parts import PARTS, lacks, squared_jerk, steps_of
+from clutchwork.sweeps.parts import PARTS, squared_jerk, steps_of
 
 if TYPE_CHECKING:
     from clutchwork.assembly.system import System
@@ -224,10 +224,10 @@ class Batch:
         systems = [system.to_bytes() for system in call.systems]
         threads = min(self.way.threads, max(1, len(call.who) // 2))
         columns, events = np.array(forms.columns, dtype=np.int64), self.wanted.events
-        read = lacks(call.systems[0].counts, forms.columns, forms.inside, parts), np.array(sorted(forms.inside), dtype=np.int64)
+        inside = np.array(sorted(forms.inside), dtype=np.int64) if parts else columns
         return Native(
             *core().sweep(
-                systems, axes, choice, options, self.way.t_end, grid, parts, columns, events, threads, progress, *read
+                systems, axes, choice, options, self.way.t_end, grid, parts, columns, events, threads, progress, inside
             )
         )
 
