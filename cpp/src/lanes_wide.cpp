@@ -23,5 +23,5 @@ void clutchwork_wide_doubt(void* form, void* step, void* doubtful) { Wide::doubt
 void clutchwork_wide_observe(void* form, void* step, const void* share, void* sound) {
   Wide::observe(form, step, share, sound);
 }
-void clutchwork_wide_fit(void* form, void* step, bool work, void* sound) { Wide::fit(form, step, work, sound); }
+void clutchwork_wide_fit(void* form, void* step, void* sound) { Wide::fit(form, step, sound); }
 #endif

@@ -57,7 +57,7 @@ void check_columns(const Task& task, std::int64_t row_size) {
     if (column < 0 || column >= row_size) throw nb::index_error("a column is not in the rows");
   };
   for (std::int64_t c = 0; c < task.width; ++c) refuse(task.columns[c]);
-  for (std::int64_t column : task.inside) refuse(column);
+  for (const std::int64_t column : task.inside) refuse(column);
 }
 
 std::int64_t row_size_of(const Bytes& system) {
@@ -72,7 +72,7 @@ std::int64_t row_size_of(const Bytes& system) {
 /// Status, details and rows of a grid, what each thread found, and what a signal handler or `progress` raised, or None.
 nb::tuple sweep(std::vector<nb::bytes> systems, std::vector<std::tuple<Whole, Words>> axes, Lines choice,
                 std::vector<Option> options, double t_end, Numbers times, int parts, Whole columns, bool events,
-                int threads, nb::object progress, std::tuple<int, int> lacks, std::optional<Whole> inside) {
+                int threads, nb::object progress, std::optional<Whole> inside) {
   Task task{};
   for (const nb::bytes& system : systems) task.systems.push_back({system.c_str(), std::int64_t(system.size())});
   for (const auto& [place, words] : axes) {
@@ -85,11 +85,9 @@ nb::tuple sweep(std::vector<nb::bytes> systems, std::vector<std::tuple<Whole, Wo
   task.choice = choice.data(), task.variants = std::int64_t(choice.shape(0));
   task.t_end = t_end, task.times = times.data(), task.instants = std::int64_t(times.shape(0)), task.parts = parts;
   task.columns = columns.data(), task.width = std::int64_t(columns.shape(0)), task.events = events;
-  task.lacks_angles = std::get<0>(lacks), task.lacks_work = std::get<1>(lacks);
+  task.chosen = inside.has_value();
+  if (inside) task.inside.assign(inside->data(), inside->data() + inside->shape(0));
   check(task);
-  const std::int64_t size = row_size_of(task.systems[0]);
-  for (std::int64_t c = 0; c < (inside ? std::int64_t(inside->shape(0)) : size); ++c)
-    task.inside.push_back(inside ? inside->data()[c] : c);
   for (const Bytes& system : task.systems) check_columns(task, row_size_of(system));
 
   const auto variants = std::size_t(task.variants);
@@ -130,7 +128,6 @@ nb::tuple sweep(std::vector<nb::bytes> systems, std::vector<std::tuple<Whole, Wo
 void bind_sweep(nb::module_& m) {
   m.def("sweep", &sweep, nb::arg("systems"), nb::arg("axes"), nb::arg("choice"), nb::arg("options"), nb::arg("t_end"),
         nb::arg("times"), nb::arg("parts"), nb::arg("columns"), nb::arg("events"), nb::arg("threads"),
-        nb::arg("progress").none(), nb::arg("lacks") = std::tuple<int, int>(0, 0),
-        nb::arg("inside") = nb::none(),
+        nb::arg("progress").none(), nb::arg("inside") = nb::none(),
         "Runs of many variants of one system, on several threads.");
 }

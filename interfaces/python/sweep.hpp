@@ -43,8 +43,8 @@ struct Task {
   const std::int64_t* columns;   ///< numbers of a row that are kept
   std::int64_t width;            ///< how many
   bool events;                   ///< whether they are kept
-  int lacks_angles, lacks_work;      ///< what rows need not have: cw_leave_out
-  std::vector<std::int64_t> inside;  ///< what is read of rows inside of steps: cw_read_inside
+  bool chosen;                   ///< whether runs are told what is read of rows
+  std::vector<std::int64_t> inside;  ///< those of rows inside of steps: cw_read
 };
 
 /// Numbers that tell why a run stopped: component, time, value, number of the row.
@@ -154,8 +154,8 @@ class Worker {
       return false;
     }
     for (const auto& [name, value] : task_.options) cw_set_option(p.run, name.c_str(), value);
-    cw_leave_out(p.run, task_.lacks_angles, task_.lacks_work);
-    cw_read_inside(p.run, task_.inside.data(), std::int64_t(task_.inside.size()));
+    if (task_.chosen)
+      cw_read(p.run, task_.columns, task_.width, task_.inside.data(), std::int64_t(task_.inside.size()));
     cw_set_poll(p.run, &Course::stopped, &course_);
     for (std::int64_t i = 0; i < task_.instants && task_.parts == 0; ++i) p.times[std::size_t(i)] = task_.times[i];
     return true;

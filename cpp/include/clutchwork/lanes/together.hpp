@@ -22,6 +22,8 @@ class Together {
   Step<LaneForm<2>> step_;
   Lanes<2> end_{0};  ///< [s] of the present step
   const int n_;      ///< speeds and states
+  const std::int64_t parts_;         ///< rows of a step
+  const ReadNumbers read_, inside_;  ///< what is read of them
   int n_active_ = 0;
   bool active_[n_lanes] = {}, counts_[n_lanes] = {}, visited_[n_lanes] = {};
   bool alone_[n_lanes] = {};  ///< what happens in its step is left to its phase
@@ -34,8 +36,12 @@ class Together {
         phase_(phases),
         form_(form_of(ws, pace_of(phases[first]).ws_)),
         step_(form_),
-        n_(form_.n()) {
+        n_(form_.n()),
+        parts_(pace_of(phases[first]).sink_.steps),
+        read_(run_of(first).out.read),
+        inside_(run_of(first).out.inside) {
     take_mode(ws_, run_of(first));
+    list_output(ws_, run_of(first), step_);
     for (int i = 0; i < n_lanes; ++i) enter(i, phase_[i] != nullptr ? i : first);
     list_varying(ws_);
   }
@@ -183,15 +189,14 @@ class Together {
   void settle() {
     Mask<2> doubtful;
     kernel_.doubt(&form_, &step_, &doubtful);
-    bool work = false;
-    int parts = 0;
+    bool work = false, rows = false;
     for (int i = 0; i < n_lanes; ++i) {
       alone_[i] = !active_[i] || !counts_[i] || doubtful[i] || is_left_alone(pace(i));
       if (alone_[i]) continue;
-      work = work || has_work(run_of(i));
-      parts = larger(parts, int(pace(i).sink_.steps));
+      work = work || (has_work(run_of(i)) && ws_.out.n_worked > 0);
+      rows = rows || parts_ > 0;
     }
-    if (work || parts > 0) write(work, parts);
+    if (work || rows) write(rows);
     for (int i = 0; i < n_lanes; ++i) {
       if (!active_[i] || !counts_[i]) continue;
       if (alone_[i]) {
@@ -206,46 +211,51 @@ class Together {
   }
 
   /// Whether what is wanted of a step is more than the lanes give.
-  static bool is_left_alone(const StepSize<double>& one) {
-    if (has_angles(one.ws_) || (has_work(one.ws_) && !sums_work_along(one.ws_))) return true;
-    if (!one.has_rows(1)) return false;
+  bool is_left_alone(const StepSize<double>& one) const {
+    const Workspace<double>& run = one.ws_;
+    const bool others = run.sys.prescribed + run.sys.supplies + run.sys.meters > 0;
+    if (has_angles(run) || (has_work(run) && (others || run.out.read.place != read_.place))) return true;
+    if (one.sink_.steps != parts_) return true;
+    if (parts_ == 0) return one.has_rows(1);
     // rows at knots are compared with those behind them
-    return one.sink_.steps == 0 || one.cut_ || one.reach_ < shortest_with_rows * (1 + abs(one.end_of_step())) ||
-           !writes_along(one.ws_);
+    return !ws_.out.rows || one.cut_ || run.out.inside.place != inside_.place ||
+           one.reach_ < shortest_with_rows * (1 + abs(one.end_of_step()));
   }
   // far above what the time can tell apart
   static constexpr double shortest_with_rows = 1e-11;
 
   /// Work and rows of the steps in which nothing happens.
-  void write(bool work, int parts) {
-    Mask<2> sound(true);
-    kernel_.fit(&form_, &step_, work, &sound);
+  void write(bool rows) {
+    Mask<2> sound;
+    kernel_.fit(&form_, &step_, &sound);
     for (int i = 0; i < n_lanes; ++i) alone_[i] = alone_[i] || !sound[i];
-    for (int k = 1; k <= parts; ++k) {
-      Lanes<2> share(1);
-      double t[n_lanes];
-      for (int i = 0; i < n_lanes; ++i) {
-        if (!alone_[i] && k <= pace(i).sink_.steps) share[i] = pace(i).share_of_part(k, t[i]);
-      }
-      kernel_.observe(&form_, &step_, &share, &sound);
-      for (int i = 0; i < n_lanes; ++i) {
-        alone_[i] = alone_[i] || !sound[i];
-        if (alone_[i] || k > pace(i).sink_.steps) continue;
-        Sink& sink = pace(i).sink_;
-        sink.times[sink.at + k - 1] = t[i];
-        write_row(run_of(i), ws_, step_, i, t[i], sink.rows + run_of(i).row.size * (sink.at + k - 1));
-      }
-    }
+    for (std::int64_t k = 1; rows && k <= parts_; ++k) write_rows(k);
     for (int i = 0; i < n_lanes; ++i) {
       if (alone_[i]) continue;
       Workspace<double>& run = run_of(i);
-      if (has_work(run)) take_work(run, ws_, i);
-      if (pace(i).sink_.steps == 0) continue;
-      pace(i).sink_.at += pace(i).sink_.steps;
-      run.out.skipped = false, run.out.shown = end_[i];
+      for (int k = 0; has_work(run) && k < ws_.out.n_worked; ++k)
+        run.work[run.branch[ws_.out.worked[k]].direction] += ws_.out.work[k][i];
+      pace(i).sink_.at += parts_;
+      if (rows) run.out.skipped = false, run.out.shown = end_[i];
     }
     // the lanes have the signals as they are at the ends
     inputs_at(ws_, end_);
+  }
+
+  /// Row k of each step.
+  void write_rows(std::int64_t k) {
+    Mask<2> sound;
+    Lanes<2> t;
+    const Lanes<2> share = share_of_row(k, parts_, step_.t, step_.h, Lanes<2>(1), end_, t);
+    kernel_.observe(&form_, &step_, &share, &sound);
+    for (int i = 0; i < n_lanes; ++i) {
+      alone_[i] = alone_[i] || !sound[i];
+      if (alone_[i]) continue;
+      const Sink& sink = pace(i).sink_;
+      const std::int64_t at = sink.at + k - 1;
+      sink.times[at] = t[i];
+      write_row(run_of(i), ws_.out, step_, i, t[i], sink.rows + run_of(i).row.size * at);
+    }
   }
 
   /// The end of the step is the start of the next one, but for those who have gone elsewhere.

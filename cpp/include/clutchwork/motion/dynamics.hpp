@@ -45,7 +45,7 @@ template <class Form, class T = typename Form::Scalar>
 
 /// As evaluate, keeping rates and torques of the branches in ws.observed, for output and guards.
 template <class Form, class T = typename Form::Scalar>
-void observe(Form& form, Real<T> t, const T* y, T* d) {
+void observe(Form& form, double t, const T* y, T* d) {
   Workspace<T>& ws = form.ws;
   T *rate = ws.observed.rate, *torque = ws.observed.torque;
   if constexpr (Form::full) return evaluate_whole(form, t, y, d, rate, torque);

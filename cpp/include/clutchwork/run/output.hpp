@@ -197,10 +197,11 @@ bool fill_row(Form& form, Step<Form>& step, double s, double s_end, Sink& sink) 
   return is_finite(form.ws, row);
 }
 
-/// The time of row k of so many that divide a step from t up to its share s_end, which is the time `end`, and its share.
-CLUTCHWORK_INLINE double share_of_row(std::int64_t k, std::int64_t parts, double start, double h, double s_end,
-                                      double end, double& t) {
-  t = k == parts ? end : start + s_end * double(k) / double(parts) * h;
+/// The time of row k of so many that divide a step from `start` up to its share s_end, which is the time `end`; its
+/// share.
+template <class R>
+CLUTCHWORK_INLINE R share_of_row(std::int64_t k, std::int64_t parts, R start, R h, R s_end, R end, R& t) {
+  t = k == parts ? end : start + s_end * R(double(k)) / R(double(parts)) * h;
   // as a grid with this instant has it, but for the bare steps
   return parts == 1 ? s_end : smaller(s_end, (t - start) / h);
 }
@@ -218,7 +219,7 @@ Status emit_parts(Form& form, Step<Form>& step, double s_end, double end, Sink& 
     out.shown = end;
   }
   for (std::int64_t k = 1; k <= parts; ++k) {
-    const double s = share_of_row(k, parts, step.t, step.h, s_end, end, sink.times[sink.at]);
+    const double s = share_of_row<double>(k, parts, step.t, step.h, s_end, end, sink.times[sink.at]);
     if (!fill_row(form, step, s, s_end, sink)) return Status::not_finite;
     ++sink.at;
   }

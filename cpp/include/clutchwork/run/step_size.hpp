@@ -78,11 +78,6 @@ struct StepSize {
     return end > ws_.time && (sink_.steps > 0 || (sink_.at < sink_.count && sink_.times[sink_.at] <= end));
   }
 
-  /// The time of row k of the step, and its share.
-  double share_of_part(std::int64_t k, double& t) const {
-    return share_of_row(k, sink_.steps, ws_.time, reach_, 1, end_of_step(), t);
-  }
-
   /// Time and length of the next step after one that counts.
   CLUTCHWORK_INLINE void move_on() {
     ws_.time = end_of_step();

@@ -83,9 +83,10 @@ struct Observed {
   }
 };
 
-/// Parts of a row, as bits.
-struct RowPart {
-  static constexpr unsigned motion = 1, state = 2, torque = 4, input = 8, other = 16, all = 31;
+/// Numbers of a row that somebody reads, in memory of the caller; n = -1: all.
+struct ReadNumbers {
+  const std::int64_t* place = nullptr;
+  std::int64_t n = -1;
 };
 
 /// What a row of output is made from.
@@ -98,7 +99,7 @@ struct Output {
   T* since = nullptr;                     ///< work of each of them since the start of the step
   int is_rough = -1;                      ///< whether the cubics miss much inside of the step; -1: not known
   int lacks_angles = 0, lacks_work = 0;   ///< whether rows lack them: 1 inside of steps, 2 everywhere
-  unsigned inside = RowPart::all;         ///< parts that are read of rows in steps in which nothing happens
+  ReadNumbers read, inside;               ///< what is read of rows; of those in steps in which nothing happens
   double until = -1;                      ///< share of the step of the last row in it, -1: it has none
   T *whole = nullptr, *halves = nullptr;  ///< work of each branch over a step and its halves
   double shown = 0;                       ///< [s] last row in a step
