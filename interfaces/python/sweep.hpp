@@ -111,7 +111,7 @@ class Worker {
 
   /// One variant of a group: its system, its run, its rows.
   struct Place {
-    std::int64_t base = -1, size = 0, row_size = 0;
+    std::int64_t base = -1, size = 0, needed = 0, row_size = 0;
     std::vector<std::uint64_t> system;  ///< bytes of the variant
     std::vector<std::int64_t> value;    ///< of each axis that these bytes have
     Memory memory;
@@ -174,8 +174,7 @@ class Worker {
         p.system[std::size_t(axis.place[k])] = axis.words[value * axis.count + k];
       p.value[a] = value;
     }
-    const std::int64_t size = cw_size(p.system.data(), p.size);
-    p.run = size < 0 ? nullptr : cw_load(p.system.data(), p.size, p.memory.of(size), size);
+    p.run = cw_load(p.system.data(), p.size, p.memory.of(p.needed), p.needed);
     if (p.run != nullptr && cw_row_size(p.run) != p.row_size) make_room(p, cw_row_size(p.run));
   }
 
@@ -183,7 +182,7 @@ class Worker {
     const Bytes& bytes = task_.systems[std::size_t(base)];
     p.system.resize(std::size_t(bytes.size + 7) / 8);
     std::memcpy(p.system.data(), bytes.data, std::size_t(bytes.size));
-    p.base = base, p.size = bytes.size;
+    p.base = base, p.size = bytes.size, p.needed = cw_size(bytes.data, bytes.size);
     p.value.assign(task_.axes.size(), -1);
   }
 

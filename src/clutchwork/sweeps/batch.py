@@ -34,6 +34,8 @@ Progress = Callable[[int], None]
 MOST_KEPT = 8_000_000
 # variants of one block: enough that threads seldom wait for the last one, few enough to report progress
 MOST_VARIANTS = 2048
+# the same where rows in steps are kept, which are looked at while they are in the cache
+MOST_IN_STEPS = 512
 # rows that a variant is expected to have in steps
 ROWS_EXPECTED = 2000
 # outputs that are looked for within the steps
@@ -153,7 +155,8 @@ class Batch:
         """Variants of one block."""
         columns = sorted(all_reads(self.wanted.channels[name].evaluate for name in self.wanted.all_signals))
         rows = len(self.wanted.grid) + (ROWS_EXPECTED if self.wanted.in_steps else 0)
-        return max(1, min(MOST_VARIANTS, MOST_KEPT // (rows * (len(columns) + 1))))
+        most = min(MOST_VARIANTS, MOST_IN_STEPS) if self.wanted.in_steps else MOST_VARIANTS
+        return max(1, min(most, MOST_KEPT // (rows * (len(columns) + 1))))
 
     def run(self, first: int, last: int, progress: Progress | None) -> Block:
         """Variants from first to last."""

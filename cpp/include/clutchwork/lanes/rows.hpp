@@ -92,8 +92,7 @@ CLUTCHWORK_INLINE void write_row(Workspace<double>& run, const LaneOutput<R>& ou
   if (out.motion) write_motion(run, step.point(), step.slope(), i, row);
   for (int j = 0; j < out.n_shown; ++j) {
     const ShownNumber<R>& one = out.shown[j];
-    // a torque that is held is added to nothing
-    row[one.place] = one.from != nullptr ? 0.0 + (*one.from)[i] : signal_value(run, int(one.place - run.row.input), t);
+    row[one.place] = one.from != nullptr ? (*one.from)[i] : signal_value(run, int(one.place - run.row.input), t);
   }
 }
 

@@ -126,6 +126,8 @@ struct LaneStep {
     auto& s = *static_cast<Step<LaneForm<R>>*>(step);
     observe_some(f, s, *static_cast<const Lanes<R>*>(share), f.ws.out.seen, f.ws.out.n_seen);
     if (f.ws.out.carried) multipliers(f.ws, f.ws.observed.torque, true, f.ws.observed.carried);
+    // a row adds what is held to nothing
+    for (int a = 0; f.ws.out.carried && a < f.ws.held.n; ++a) f.ws.observed.carried[a] += Lanes<R>(0);
     *static_cast<Mask<R>*>(sound) = is_sound(f, s);
   }
   /// Its interpolant, and the work that is read; lanes in which that is finite.

@@ -191,7 +191,7 @@ class Together {
     kernel_.doubt(&form_, &step_, &doubtful);
     bool work = false, rows = false;
     for (int i = 0; i < n_lanes; ++i) {
-      alone_[i] = !active_[i] || !counts_[i] || doubtful[i] || is_left_alone(pace(i));
+      alone_[i] = !active_[i] || !counts_[i] || is_left_alone(pace(i));
       if (alone_[i]) continue;
       work = work || (has_work(run_of(i)) && ws_.out.n_worked > 0);
       rows = rows || parts_ > 0;
@@ -199,13 +199,15 @@ class Together {
     if (work || rows) write(rows);
     for (int i = 0; i < n_lanes; ++i) {
       if (!active_[i] || !counts_[i]) continue;
-      if (alone_[i]) {
+      visited_[i] = alone_[i] || doubtful[i];
+      bool nothing = true;
+      if (visited_[i]) {
         unload(i);
-        phase_[i]->settle_given();
-        visited_[i] = true;
+        nothing = phase_[i]->settle_given(!alone_[i]);
       } else {
         pace(i).move_on();
       }
+      if (nothing) take_written(i);
     }
     pass_on();
   }
@@ -230,16 +232,17 @@ class Together {
     kernel_.fit(&form_, &step_, &sound);
     for (int i = 0; i < n_lanes; ++i) alone_[i] = alone_[i] || !sound[i];
     for (std::int64_t k = 1; rows && k <= parts_; ++k) write_rows(k);
-    for (int i = 0; i < n_lanes; ++i) {
-      if (alone_[i]) continue;
-      Workspace<double>& run = run_of(i);
-      for (int k = 0; has_work(run) && k < ws_.out.n_worked; ++k)
-        run.work[run.branch[ws_.out.worked[k]].direction] += ws_.out.work[k][i];
-      pace(i).sink_.at += parts_;
-      if (rows) run.out.skipped = false, run.out.shown = end_[i];
-    }
     // the lanes have the signals as they are at the ends
     inputs_at(ws_, end_);
+  }
+
+  /// What was written of a step becomes part of its run.
+  void take_written(int i) {
+    Workspace<double>& run = run_of(i);
+    for (int k = 0; has_work(run) && k < ws_.out.n_worked; ++k)
+      run.work[run.branch[ws_.out.worked[k]].direction] += ws_.out.work[k][i];
+    pace(i).sink_.at += parts_;
+    if (parts_ > 0) run.out.skipped = false, run.out.shown = end_[i], pace(i).sink_.lean = true;
   }
 
   /// Row k of each step.
