@@ -39,11 +39,11 @@ struct Task {
   double t_end;
   const double* times;  ///< instants of a grid
   std::int64_t instants;
-  int parts;                     ///< rows in every step, 0: the grid
-  const std::int64_t* columns;   ///< numbers of a row that are kept
-  std::int64_t width;            ///< how many
-  bool events;                   ///< whether they are kept
-  bool chosen;                   ///< whether runs are told what is read of rows
+  int parts;                         ///< rows in every step, 0: the grid
+  const std::int64_t* columns;       ///< numbers of a row that are kept
+  std::int64_t width;                ///< how many
+  bool events;                       ///< whether they are kept
+  bool chosen;                       ///< whether runs are told what is read of rows
   std::vector<std::int64_t> inside;  ///< those of rows inside of steps: cw_read
 };
 
@@ -188,8 +188,10 @@ class Worker {
 
   void make_room(Place& p, std::int64_t row_size) {
     p.row_size = row_size;
-    const std::int64_t rows = task_.parts > 0 ? task_.parts + std::clamp(most_numbers / std::max(row_size, std::int64_t(1)), least_rows, most_rows)
-                        : task_.instants;
+    const std::int64_t rows =
+        task_.parts > 0
+            ? task_.parts + std::clamp(most_numbers / std::max(row_size, std::int64_t(1)), least_rows, most_rows)
+            : task_.instants;
     p.times.resize(std::size_t(rows));
     p.rows.resize(std::size_t(rows * row_size));
   }

@@ -332,6 +332,9 @@ def rows_of(systems: list[cw.System], t_end: float, read: list[int], inside: lis
     return sorted(((status[n].item(), n, *own) for n, *own in parts), key=lambda one: one[1])
 
 
+READ_IN_LANES = ("speed", "acceleration", "state", "element_torque", "contact_torque", "input")
+
+
 @pytest.mark.random
 def test_rows_that_lanes_write_are_those_of_each_run():
     """Whatever is read of them, and whatever other numbers of rows are left out."""
@@ -346,9 +349,10 @@ def test_rows_that_lanes_write_are_those_of_each_run():
         except cw.ModelError:
             return ""
         columns = row_columns(system.counts)
-        parts = ("speed", "acceleration", "state", "element_torque", "contact_torque", "input")
-        known = [at for name in parts for at in range(columns[name].start, columns[name].stop)]
-        work = [at for name in ("element_work", "contact_work") for at in range(columns[name].start, columns[name].stop)]
+        known, work = (
+            [at for name in names for at in range(columns[name].start, columns[name].stop)]
+            for names in (READ_IN_LANES, ("element_work", "contact_work"))
+        )
         inside = sorted(rng.permutation(known)[: rng.integers(1, len(known) + 1)].tolist())
         whole = rows_of(near, t_end, [*inside, *work], None)
         lean = rows_of(near, t_end, [*inside, *work], inside)
@@ -367,7 +371,8 @@ def test_a_lane_that_ends_leaves_the_others():
     d = cw.Driveline("eight")
     a, b = d.shaft("a", inertia=1e-3, speed=80.0), d.shaft("b", inertia=2.0)
     d.add(cw.Torque("motor", shaft=a, torque=1.0))
-    d.add(cw.Clutch("c", base=a, follower=b, friction=cw.Coulomb(static=0.2, kinetic=0.15), gain=0.1, normal_force=40.0))
+    coulomb = cw.Coulomb(static=0.2, kinetic=0.15)
+    d.add(cw.Clutch("c", base=a, follower=b, friction=coulomb, gain=0.1, normal_force=40.0))
     system = d.assemble()
     torques = [0.1, 0.2, 1e307, 0.3, 0.4, 0.5, 0.6, 0.7]
     asked = [cw.peak("a.speed"), cw.peak("c.torque"), "c.heat", cw.lock("c"), cw.maximum("motor.torque"), "b.speed"]

@@ -55,10 +55,10 @@ int cw_release_input(cw_run* run, int64_t input);
    alone. It is not part of a saved state. 1: set; 0: no run. */
 int cw_expect_inputs(cw_run* run, int expected);
 
-/* Which numbers of rows somebody reads, and which of rows in steps in which nothing happens: `inside`, some of them. Both
-   lists stay with the caller while the run goes on. Rows at the ends of the run and beside events and knots may lack
-   angles and work that nobody reads, other rows whatever is not in `inside`; they have it as it was. The steps are the
-   same. It is not part of a saved state. 1: set; 0: no run, or a number that no row has. */
+/* Which numbers of rows somebody reads, and which of rows in steps in which nothing happens: `inside`, some of them.
+   Both lists stay with the caller while the run goes on. Rows at the ends of the run and beside events and knots may
+   lack angles and work that nobody reads, other rows whatever is not in `inside`; they have it as it was. The steps are
+   the same. It is not part of a saved state. 1: set; 0: no run, or a number that no row has. */
 int cw_read(cw_run* run, const int64_t* numbers, int64_t n, const int64_t* inside, int64_t n_inside);
 
 /* A number of the parameter pool, before the run starts or between calls. 1: set; 0: no such number, the value is not

@@ -1,9 +1,9 @@
 #pragma once
 #include <clutchwork/components/branch.hpp>
 #include <clutchwork/lanes/inputs.hpp>
+#include <clutchwork/run/gauss.hpp>
 #include <clutchwork/run/guards/line.hpp>
 #include <clutchwork/run/guards/torques.hpp>
-#include <clutchwork/run/gauss.hpp>
 #include <clutchwork/run/integrator/rodas5p.hpp>
 #include <clutchwork/run/step.hpp>
 

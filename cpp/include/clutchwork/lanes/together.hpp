@@ -20,8 +20,8 @@ class Together {
   LanePhase* const* phase_;  ///< of each lane, null: nobody
   LaneForm<2> form_;
   Step<LaneForm<2>> step_;
-  Lanes<2> end_{0};  ///< [s] of the present step
-  const int n_;      ///< speeds and states
+  Lanes<2> end_{0};                  ///< [s] of the present step
+  const int n_;                      ///< speeds and states
   const std::int64_t parts_;         ///< rows of a step
   const ReadNumbers read_, inside_;  ///< what is read of them
   int n_active_ = 0;

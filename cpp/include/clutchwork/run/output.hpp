@@ -200,8 +200,8 @@ bool fill_row(Form& form, Step<Form>& step, double s, double s_end, Sink& sink) 
   return is_finite(form.ws, row);
 }
 
-/// What is read of a row at s, which nobody compares with another, where that is no more than torques of branches, states
-/// and signals. False: it is more, or not finite.
+/// What is read of a row at s, which nobody compares with another, where that is no more than torques of branches,
+/// states and signals. False: it is more, or not finite.
 template <class Form, class T = typename Form::Scalar>
 bool fill_read(Form& form, Step<Form>& step, double s, double* row) {
   Workspace<T>& ws = form.ws;

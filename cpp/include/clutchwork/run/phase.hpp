@@ -84,8 +84,8 @@ class Phase : public StepSize<typename Form::Scalar> {
 
   /// A knot, or the end. False: the phase is over.
   [[gnu::noinline]] bool settle_due() { return may_step(); }
-  /// Whatever happens inside the step, of which the rows of both ends and the stages are given. `written`: rows and work
-  /// are there for the case that nothing happens; true: nothing did.
+  /// Whatever happens inside the step, of which the rows of both ends and the stages are given. `written`: rows and
+  /// work are there for the case that nothing happens; true: nothing did.
   [[gnu::noinline]] bool settle_given(bool written) {
     step_.t = ws_.time, step_.h = reach_, step_.dense = false;
     const Hit hit = find_hit(taken_form(), taken_step());
@@ -550,12 +550,15 @@ class Phase : public StepSize<typename Form::Scalar> {
     GuardList::visit(hit.what, [&](auto tag) { decltype(tag)::type::settle(*this, hit); });
   }
 
-  /// The row at the start of the step is compared with the one behind the event.
+  /// The row at the start of the step is compared with the one behind the event; what is read of it stays as it is.
+  /// There is room for one more behind it.
   [[gnu::noinline]] void fill_last_row() {
     fit(form_, step_);
-    --sink_.at;
     fill_row(form_, step_, 0.0, 0.0, sink_);
-    ++sink_.at;
+    double *full = sink_.rows + ws_.row.size * sink_.at, *last = full - ws_.row.size;
+    const ReadNumbers& inside = ws_.out.inside;
+    for (std::int64_t i = 0; i < inside.n; ++i) full[inside.place[i]] = last[inside.place[i]];
+    for (std::int64_t i = 0; i < ws_.row.size; ++i) last[i] = full[i];
   }
 
   /// Slopes of the speeds without inertia, which no equation of motion gives.
