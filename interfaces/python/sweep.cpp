@@ -86,7 +86,8 @@ nb::tuple sweep(std::vector<nb::bytes> systems, std::vector<std::tuple<Whole, Wo
   task.t_end = t_end, task.times = times.data(), task.instants = std::int64_t(times.shape(0)), task.parts = parts;
   task.columns = columns.data(), task.width = std::int64_t(columns.shape(0)), task.events = events;
   task.chosen = inside.has_value();
-  if (inside) task.inside.assign(inside->data(), inside->data() + inside->shape(0));
+  const Whole& read = inside ? *inside : columns;
+  task.inside.assign(read.data(), read.data() + read.shape(0));
   check(task);
   for (const Bytes& system : task.systems) check_columns(task, row_size_of(system));
 
@@ -114,8 +115,9 @@ nb::tuple sweep(std::vector<nb::bytes> systems, std::vector<std::tuple<Whole, Wo
     const std::size_t n = one.variant.size(), rows = one.times.size(), kept = one.events.size() / event_kept;
     parts_found.append(nb::make_tuple(owned(std::move(one.variant), {n}), owned(std::move(one.rows), {n}),
                                       owned(std::move(one.times), {rows}),
-                                      owned(std::move(one.values), {rows, std::size_t(task.width)}),
-                                      owned(std::move(one.events), {kept, event_kept})));
+                                      owned(std::move(one.values), {rows, task.inside.size()}),
+                                      owned(std::move(one.events), {kept, event_kept}),
+                                      owned(std::move(one.ends), {n, std::size_t(2), std::size_t(task.width)})));
   }
   nb::object lines =
       parts > 0 ? nb::none() : owned(std::move(grid), {variants, std::size_t(task.instants), std::size_t(task.width)});

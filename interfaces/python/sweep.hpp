@@ -65,6 +65,7 @@ struct Results {
 struct Found {
   std::vector<std::int64_t> variant, rows;  ///< variants and how many rows each has
   std::vector<double> times, values, events;
+  std::vector<double> ends;  ///< what is kept of the first and the last row of each
 };
 
 /// One thread: its memory, and the variants it takes.
@@ -116,7 +117,7 @@ class Worker {
     std::vector<std::int64_t> value;    ///< of each axis that these bytes have
     Memory memory;
     std::vector<double> times, rows;
-    std::vector<double> kept_times, kept;  ///< of the rows in steps up to now
+    std::vector<double> kept_times, kept, ends;  ///< of the rows in steps up to now
     cw_run* run = nullptr;
   };
   Place place_[group];
@@ -234,12 +235,19 @@ class Worker {
     }
   }
   void take_steps(Place& p, std::int64_t v, std::int64_t filled) {
-    const std::size_t at = p.kept.size();
-    p.kept.resize(at + std::size_t(filled * task_.width));
-    for (std::int64_t i = 0; i < filled; ++i)
-      keep(p.rows.data() + i * p.row_size, p.kept.data() + at + std::size_t(i * task_.width));
+    const auto wide = std::size_t(task_.width), inside = task_.inside.size();
+    if (p.kept_times.empty() && filled > 0) p.ends.assign(2 * wide, 0.0), keep(p.rows.data(), p.ends.data());
+    if (filled > 0) keep(p.rows.data() + (filled - 1) * p.row_size, p.ends.data() + wide);
+    double* to = grown(p.kept, std::size_t(filled) * inside);
+    for (std::int64_t i = 0; i < filled; ++i) {
+      for (std::size_t c = 0; c < inside; ++c) *to++ = p.rows[std::size_t(i * p.row_size + task_.inside[c])];
+    }
     p.kept_times.insert(p.kept_times.end(), p.times.begin(), p.times.begin() + filled);
     take_events(p.run, v);
+  }
+  static double* grown(std::vector<double>& numbers, std::size_t by) {
+    numbers.resize(numbers.size() + by);
+    return numbers.data() + numbers.size() - by;
   }
   /// The rows of a variant, behind those of the variants before it.
   int close_steps(Place& p, std::int64_t v, const cw_member& member) {
@@ -247,7 +255,9 @@ class Worker {
     found.rows.push_back(std::int64_t(p.kept_times.size()));
     found.times.insert(found.times.end(), p.kept_times.begin(), p.kept_times.end());
     found.values.insert(found.values.end(), p.kept.begin(), p.kept.end());
-    p.kept_times.clear(), p.kept.clear();
+    p.ends.resize(2 * std::size_t(task_.width));
+    found.ends.insert(found.ends.end(), p.ends.begin(), p.ends.end());
+    p.kept_times.clear(), p.kept.clear(), p.ends.clear();
     return member.status;
   }
 

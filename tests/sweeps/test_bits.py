@@ -324,11 +324,11 @@ def rows_of(systems: list[cw.System], t_end: float, read: list[int], inside: lis
     given = (np.zeros(0), PARTS, np.array(read, dtype=np.int64), False, 1, None)
     lean = None if inside is None else np.array(inside, dtype=np.int64)
     bytes_of = [system.to_bytes() for system in systems]
-    status, _, _, ((which, counts, times, rows, _),), _ = core().sweep(
+    status, _, _, ((which, counts, times, rows, _, ends),), _ = core().sweep(
         bytes_of, [], choice, numbers, t_end, *given, lean
     )
     cuts = np.cumsum(counts)[:-1]
-    parts = zip(which.tolist(), np.split(times, cuts), np.split(rows, cuts), strict=True)
+    parts = zip(which.tolist(), np.split(times, cuts), np.split(rows, cuts), ends, strict=True)
     return sorted(((status[n].item(), n, *own) for n, *own in parts), key=lambda one: one[1])
 
 
@@ -356,10 +356,10 @@ def test_rows_that_lanes_write_are_those_of_each_run():
         inside = sorted(rng.permutation(known)[: rng.integers(1, len(known) + 1)].tolist())
         whole = rows_of(near, t_end, [*inside, *work], None)
         lean = rows_of(near, t_end, [*inside, *work], inside)
-        for (status, number, times, rows), (ended, _, at, found) in zip(whole, lean, strict=True):
-            if status != ended or not same(times, at) or not same(rows[:, : len(inside)], found[:, : len(inside)]):
+        for (status, number, times, rows, edges), (ended, _, at, found, both) in zip(whole, lean, strict=True):
+            if status != ended or not same(times, at) or not same(rows[:, : len(inside)], found):
                 return f"run {number} of {inside}"
-            if not same(rows[-1], found[-1]):
+            if not same(edges, both):
                 return f"work of run {number}"
         return ""
 
