@@ -27,7 +27,7 @@ SOURCES = [ROOT / "cpp" / "src" / f"{name}.cpp" for name in NAMES]
 HOT = {"phases_small", "phases_sparse"}
 # what a page has no use for: groups of runs, linearisation, what FMUs ask for
 LEFT_OUT = re.compile(
-    r"cw_(advance_group|group_size|leave_out|local|local_size|advance_to_event|next_knot|copy|paste"
+    r"cw_(advance_group|group_size|read|local|local_size|advance_to_event|next_knot|copy|paste"
     r"|states|rates|margins|decide|place|place_size|place_input)"
 )
 FLAGS = [
