@@ -140,8 +140,8 @@ def _left(ways: list[Any], node: int, front: float, back: float) -> float:
 
 
 def passes_zero(base: Any) -> bool:
-    """Whether a run ends where a ratio that is a signal passes zero."""
-    end = base.time[-1]
+    """Whether a run ends where a ratio that is a signal passes zero; one without rows ends where it starts."""
+    end = base.time[-1] if len(base.time) else base.options.t_start
     for branch in base.wiring.elements:
         ratio = getattr(branch.component, "ratio", None)
         if isinstance(ratio, cw.Signal):
