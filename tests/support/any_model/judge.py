@@ -22,9 +22,9 @@ CAUSES = {"jammed": "prescribed", "unbalanced": "prescribed", "out_of_table": ""
 LOST = 1e9
 # a speed that is none of a driveline
 FAST = 1e4
-# kinds of fault that may be no more than the tolerance of a run times how stiff it is, or what its interpolant misses: a
-# slip is a difference of speeds that are far larger, and what a spring stores may be less than the
-# tolerance of its twist makes
+# kinds of fault that may be no more than the tolerance of a run times how stiff it is, or what its interpolant misses:
+# a slip is a difference of speeds that are far larger, and what a spring stores may be less than the tolerance of its
+# twist makes
 OF_TOLERANCE = ("integral", "balance massless", "creeps", "twist", "energy", "heat", "mode")
 # of its largest ratio, one at a dead point: a crank or a cam that starts there and is held stops within a step of it
 DEAD = 1e-3
@@ -100,11 +100,10 @@ def ending(made: Plain, base: Any) -> list[Fault]:
         return []
     if base.status == "jammed" and JAMS["light"][0] in base.message:
         return []
-    # a freewheel behind a ratio that passes zero: whatever it held, what turns on the other side would turn it backward;
-    # so would it a gear that locks itself
-    if base.status == "jammed" and JAMS["turned"][0] in base.message and passes_zero(base):
-        return []
-    if base.status == "unbalanced" and passes_zero(base):
+    # a freewheel, or a gear that locks itself, behind a ratio that passes zero: whatever it held, what turns on the other
+    # side would turn it backward
+    turned = base.status == "unbalanced" or (base.status == "jammed" and JAMS["turned"][0] in base.message)
+    if turned and passes_zero(base):
         return []
     if base.status in ("jammed", "unbalanced", "too_many_steps") and at_dead_point(base):
         return []

@@ -183,8 +183,8 @@ void take_off_span(const Workspace<T>& ws, T* x) {
 }
 
 /// Of a direction of a contact that is shorter than this share of itself by the rows nothing is left; of an element,
-/// which only moves others, what is more than the round-off of the span is. `shared`: the same of a contact that is held
-/// in a set, which shares a load up to its pole.
+/// which only moves others, what is more than the round-off of the span is. `shared`: the same of a contact that is
+/// held in a set, which shares a load up to its pole.
 inline constexpr double left_over = 1e-7, round_off_of_span = 1e-13, left_over_shared = 1e-9;
 
 /// Orthonormal span of the rows that tie speeds with inertia, but for one (-1: none); of those that depend on others
