@@ -173,6 +173,14 @@ struct LineCrossing {
     slope = guard.sign * value(form.rate(guard.branch, velocity));
     return form.ws.sys.prescribed == 0;
   }
+  /// How long before and behind a kink a torque that is another one right at it is that of its side.
+  template <class Form, class T = typename Form::Scalar>
+  static double aside(Form& form, const Hit& hit, const T* velocity) {
+    constexpr double away = 1e-10;
+    const LineGuard& guard = form.ws.guard.line[hit.index];
+    const double slope = abs(value(form.rate(guard.branch, velocity)));
+    return guard.kind == LineGuard::edge && slope > 0 ? away * larger(abs(guard.level), 1.0) / slope : 0.0;
+  }
   template <class T>
   static int component(const Workspace<T>& ws, const Hit& hit) {
     return ws.branch[ws.guard.line[hit.index].branch].direction;
