@@ -343,6 +343,18 @@ def test_a_ratio_of_words_that_are_left_of_large_ones() -> None:
         slope(along, here, width, width, np.inf, 0.0 * noise)
 
 
+def test_a_jerk_of_which_the_first_steps_have_a_share() -> None:
+    # seed 80069: a run with derivatives left out the first nanosecond of seven microseconds of slip
+    d = cw.Driveline("first")
+    a, b = d.shaft("a", inertia=0.0355), d.shaft("b", inertia=0.0812, speed=5.36)
+    d.add(cw.Torque("t", shaft=a, torque=-10.9))
+    d.add(cw.BeltContact("c", base=a, follower=b, forward=5.63, backward=0.803, speed=-0.683, tension=3255.0))
+    d.add(cw.SpeedTorque("s", shaft=a, torque=[(4.298, 9.99), (6.902, 4.69), (7.877, 91.4)]))
+    tally = judged(d, 1e-3, [cw.squared_jerk("a")], ["a.inertia", "b.speed"])
+    assert tally.wrong + tally.refused + tally.apart == []
+    assert tally.compared == 2
+
+
 # 0.711: what is left of bounds that are reached, which is round-off, was taken for what is left of others
 @pytest.mark.parametrize("efficiency", [0.66, 0.7, 0.711, 0.715])
 def test_a_set_of_gears_with_losses_that_holds_any_load_or_none(efficiency: float) -> None:
