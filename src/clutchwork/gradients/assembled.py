@@ -27,6 +27,8 @@ Places = NDArray[np.intp]
 
 # points that are remembered
 MOST_KEPT = 8
+# numbers of a piece of a signal, and which of them are amplitudes and phases of its waves
+PIECE, AMPLITUDES, PHASES = 12, [4, 8], [6, 10]
 # words that are sums of fractions, of which small ones may be what is left of large ones
 SUMS = ("basis_value", "mass_value", "element_rate_value", "contact_rate_value", "initial_speed")
 # key of derivatives that hold everywhere
@@ -48,9 +50,11 @@ def made(system: System, parameters: Sequence[Tunable], x: Array) -> System:
 
 @memoize
 def turning(system: System) -> tuple[Places, Array]:
-    """Words of start values that start again, as the angle of a cam does, and after how much."""
+    """Words that start again, as the angle of a cam at the start and the phase of a wave do, and after how much."""
     first, number = system.starts["initial_state"] // 8, 0
-    places, turns = list[int](), list[float]()
+    coefficients = system.starts["segment_coef"] // 8 + np.arange(system.arrays["segment_coef"].size).reshape(-1, PIECE)
+    places = coefficients[:, PHASES].ravel().tolist()
+    turns = [2.0 * np.pi] * len(places)
     for element in system.elements:
         begin, kind = first + int(system.arrays["element_state"][number]), type(element)
         own = [(begin + place, state.turn) for place, state in enumerate(kind.states) if state.turn]
@@ -146,6 +150,10 @@ class Assembled:
             first = self.system.starts[name] // 8
             own = slice(first, first + self.system.arrays[name].size)
             noise[own] = ROUND_OFF * np.abs(words[own]).max(initial=0.0)
+        # a wave that begins where it is zero
+        first, waves = self.system.starts["input_value"] // 8, self.system.arrays["segment_coef"].reshape(-1, PIECE)
+        own = slice(first, first + self.system.arrays["input_value"].size)
+        noise[own] = ROUND_OFF * np.abs(waves[:, AMPLITUDES]).max(initial=0.0)
         return noise
 
     def _is_plane(self, x: Array, here: Array, slopes: Array, there: Callable[[Array], Array]) -> bool:
