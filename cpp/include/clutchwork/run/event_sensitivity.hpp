@@ -139,27 +139,43 @@ void note_graze(Workspace<T>& ws, int what, int component, double index, const T
   if (m.n < Moved<T>::room) m.graze[m.n++] = {ws.time, double(what), double(component), index, apart};
 }
 
-/// Borders of pieces on which the run begins, and which move with the numbers: on which side it begins is open.
-template <class Form>
-void note_borders(Form& form, Step<Form>& step) {
+/// Borders of a guard at which the present state is, and which move with the numbers: on which side it is is open.
+template <class G, class Form>
+void note_borders_of(Form& form, Step<Form>& step, int place) {
   constexpr double near = 1e-9;
   using T = typename Form::Scalar;
   Workspace<T>& ws = form.ws;
-  if (ws.statistics.steps > 0) return;
-  GuardList::each([&](auto tag, int place) {
-    using G = typename decltype(tag)::type;
-    if constexpr (requires { G::each_border(ws, [](int) {}); }) {
-      G::each_border(ws, [&](int index) {
-        Hit hit;
-        hit.what = place, hit.index = index, ws.in.time = -infinity;
-        const T margin = G::at(form, step, hit, ws.time, step.y0(), hit.who);
-        if (abs(value(margin)) > near * G::scale(form, hit, step.y0())) return;
-        note_graze(ws, place, G::component(ws, hit), infinity, margin);
-        ws.moved.last = T(0);
-      });
+  const T last = ws.moved.last;
+  const double last_time = ws.moved.last_time;
+  // a load may be turned by where a signal goes from here
+  const double far = ws.in.next_knot < infinity ? 0.37 * (ws.in.next_knot - ws.time) : 1e-3 * (1 + abs(ws.time));
+  const double ahead = std::is_same_v<G, LineFlip> ? far : 0.0;
+  G::each_border(ws, [&](int index) {
+    for (const double later : {0.0, ahead}) {
+      Hit hit;
+      hit.what = place, hit.index = index, ws.in.time = -infinity;
+      const T margin = G::at(form, step, hit, ws.time + later, step.y0(), hit.who);
+      if (abs(value(margin)) > near * G::scale(form, hit, step.y0())) return;
+      // as one that is met together with what does not move
+      ws.moved.last = T(0), ws.moved.last_time = ws.time;
+      note_graze(ws, place, G::component(ws, hit), infinity, margin);
+      if (ahead == 0) return;
     }
   });
+  ws.moved.last = last, ws.moved.last_time = last_time;
   ws.in.time = -infinity;
+}
+
+/// Borders of pieces on which the run begins. `loads` alone: loads that follow torques and are zero from here on.
+template <class Form>
+void note_borders(Form& form, Step<Form>& step, bool loads = false) {
+  if (form.ws.statistics.steps > 0 && !loads) return;
+  GuardList::each([&](auto tag, int place) {
+    using G = typename decltype(tag)::type;
+    if constexpr (requires { G::each_border(form.ws, [](int) {}); }) {
+      if (!loads || std::is_same_v<G, LineFlip>) note_borders_of<G>(form, step, place);
+    }
+  });
 }
 
 /// Contacts that come to rest with the one that was hit, but at another instant where a number changes: by how much
