@@ -37,7 +37,7 @@ TOUCHED = 1e-5
 # so many changes within so long [s] are refused
 CROWD, CROWDED = 6, 1e-4
 BY_NAME = {name: number for number, (name, _) in CAUSES.items()}
-BORDERS = ("line", "law", "process")
+BORDERS = ("line", "law", "process", "flip")
 IMPACT, JAM, DRIVEN = BY_NAME["impact"], BY_NAME["jam"], (BY_NAME["input"], BY_NAME["other event"])
 AT = {name: column for column, (name, _) in enumerate(EVENT)}
 
@@ -52,6 +52,12 @@ def guards(effect: str) -> tuple[int, ...]:
 def borders() -> tuple[int, ...]:
     """Numbers in the core of the guards where another piece of a law, a table or a process begins."""
     return tuple(number for number, (name, _) in enumerate(derivatives().guards) if name in BORDERS)
+
+
+@cache
+def loads() -> tuple[int, ...]:
+    """Numbers in the core of the guards of loads that follow torques."""
+    return tuple(number for number, (name, _) in enumerate(derivatives().guards) if name == "flip")
 
 
 def together(grazes: Array, decided: Array) -> bool:
@@ -104,7 +110,9 @@ def moving_apart(
     met = np.concatenate([decided, grazes[np.isin(grazes[:, KIND], borders())]])
     for graze in np.unique(met[met[:, DIFFERENCE] * sizes > APART], axis=0):
         time, name = float(graze[TIME]), component(system, int(graze[COMPONENT]), int(graze[KIND]))
-        if abs(time - begin) <= SAME * (1.0 + abs(begin)):
+        if graze[KIND] in loads() and graze[INDEX] == np.inf:
+            yield time, f"the load of {name} is zero from {time:.9g} s on, and a little more turns it either way"
+        elif abs(time - begin) <= SAME * (1.0 + abs(begin)):
             yield time, f"{name} begins where it goes from one piece to another; move a start value, or that border"
         else:
             what = f"two events at {time:.9g} s, of which {name} is one, move apart with the numbers; separate them"

@@ -120,7 +120,7 @@ class Runs:
             return point
         run, steps, jerks = self.plain.with_jerks(point.system, self.signals.at(x))
         self._refuse_stopped(run.status, run.detail)
-        return self._with_grid(point._replace(steps=steps.long().inside(), events=run.events[:, 0], jerks=jerks))
+        return self._with_grid(point._replace(steps=steps.covering().inside(), events=run.events[:, 0], jerks=jerks))
 
     def forward(self, point: RunPoint) -> Run:
         """A run with derivatives by all numbers."""

@@ -411,9 +411,11 @@ template <class T>
   LoadedLimit<T> limit = loaded_limit(ws, set, ws.held.set_member + ws.held.set_first[k], T(0));
   const T factor = solve_loaded(limit);
   if (!(value(factor) >= 1)) return T(-1);
+  // what is left of one that is reached is round-off
+  const double reached = 1e-12 * value(factor * limit.size);
   T least = T(infinity);
   for (int j = set.n; j < set.n + 2 * limit.n_loads; ++j) {
-    if (limit.place[j] >= 0 && value(limit.x[j]) < value(least)) least = limit.x[j];
+    if (limit.place[j] >= 0 && value(limit.x[j]) > reached && value(limit.x[j]) < value(least)) least = limit.x[j];
   }
   return least / (factor * limit.size);
 }

@@ -291,6 +291,7 @@ class Phase : public StepSize<typename Form::Scalar> {
     if (knot_lets_go(taken_form().ws)) return decide(Cause::input);
     if constexpr (has_tangents<T>) {
       if (leave_event(form_, step_)) balance_massless(form_, step_), linearize_start();
+      note_borders(form_, step_, true);
     }
     show_behind(jumps);
   }

@@ -20,6 +20,11 @@ struct LineFlip {
   static bool watches(const Workspace<T>& ws) {
     return ws.loads.n_sliding > 0;
   }
+  /// Call f for each load of a contact that slips.
+  template <class T, class F>
+  static void each_border(const Workspace<T>& ws, F&& f) {
+    for (int i = 0; i < ws.loads.n_sliding; ++i) f(ws.loads.sliding[i]);
+  }
   template <class Form>
   [[gnu::noinline]] static void find(Form& form, Step<Form>& step, Hit& hit) {
     using T = typename Form::Scalar;
