@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import field, replace
+from functools import cached_property
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -89,7 +90,7 @@ class Wiring:
     sums: Mapping[str, tuple[str, ...]] = field(default_factory=dict)
     unused: frozenset[str] = frozenset()  # inputs of features that nobody asked for
 
-    @property
+    @cached_property
     def row_size(self) -> int:
         """Numbers in one output row."""
         return max((part.stop for part in self.columns.values()), default=0)

@@ -49,14 +49,17 @@ class Tape {
   /// Derivatives of what has been seeded by all numbers, in place.
   void back(double* adjoint) const {
     for (std::int32_t i = n_ - 1; i > 0; --i) {
-      const double x = adjoint[i];
+      double x = adjoint[i];
       if (x == 0) continue;
-      const Node& node = node_[i];
-      std::int32_t first = node.first;
-      if (first < 0) first = ~first, adjoint[i - 1] += x;
-      // what a constant gets is not looked at
-      adjoint[first] += x * node.by_first;
-      adjoint[node.second] += x * node.by_second;
+      // a sum goes on in the node before it; what a constant gets is not looked at
+      for (;;) {
+        const Node& node = node_[i];
+        const bool goes_on = node.first < 0;
+        adjoint[goes_on ? ~node.first : node.first] += x * node.by_first;
+        if (node.second != 0) adjoint[node.second] += x * node.by_second;
+        if (!goes_on) break;
+        x += adjoint[--i];
+      }
     }
   }
 

@@ -32,8 +32,8 @@ class Variation {
   using Plain = typename PlainForm<Form>::type;
   template <class X>
   using As = SlopesAs<T, X>;
-  // of a step: how far ahead the change of the slopes with time is looked at
-  static constexpr double ahead = 1e-3;
+  // of a part: how far ahead the change of the slopes with time is looked at, twice; loose tolerances need one look
+  static constexpr double ahead = 1e-3, loose = 1e-8;
   // a direction may miss so much of itself in a part, of rtol: the error of the motion moves derivatives by more
   static constexpr double allowed = 3;
 
@@ -46,6 +46,7 @@ class Variation {
   double at_ = -1, other_at_ = -1;
   bool is_whole_ = false;                      ///< the image has the factor of the whole step
   bool known_ = false;                         ///< the slopes at the start of the next part
+  const double look_once_;                     ///< of a part, ahead of its start
   double reached_[T::seen] = {};               ///< sizes of the directions up to the end of the part that is tried
   bool rows_move_ = true, mass_moves_ = true;  ///< with the numbers of the model
 
@@ -58,6 +59,7 @@ class Variation {
         step_(own_step),
         ws_(own.ws),
         calls_(PlainCalls<Plain, Rodas5P>::all()),
+        look_once_(1e-2 * pow(own.ws.options.rtol, 0.4)),
         form(prepared(own.ws)),
         step(form) {
     step.calls = &calls_;
@@ -123,7 +125,6 @@ class Variation {
     const StepEnd<double> edge = form.ws.step_start;
     form.ws.step_start = form.ws.step_end, form.ws.step_end = edge;
     form.ws.time = ws_.time;
-    give_end(form.ws.step_start, ws_.step_start), give_end(form.ws.step_end, ws_.step_end);
     if (ws_.options.work) take_values(ws_.work, ws_.n_directions, form.ws.work);
     at_ = 0, other_at_ = -1;
   }
@@ -271,10 +272,11 @@ class Variation {
   template <class X>
   [[gnu::noinline]] void slopes_at(double s, const X* y, X* d) {
     const double at = from_ + s * share_, t = step.t + at * step.h;
+    const bool all = Form::full || rows_move_ || ws_.sys.shared > 0;
     T *whole = step_.point(), *made = step_.p(2);
     interpolate(form, step, at, step.point());
-    for (int i = 0; i < form.n(); ++i) whole[i] = As<X>::number(step.point()[i], y[i]);
-    if (Form::full || rows_move_ || ws_.sys.shared > 0) {
+    for (int i = all ? 0 : form.nz(); i < form.n(); ++i) whole[i] = As<X>::number(step.point()[i], y[i]);
+    if (all) {
       evaluate(form_, t, whole, made);
       for (int i = 0; i < form.n(); ++i) d[i] = As<X>::of(made[i]), step.slope()[i] = value(made[i]);
     } else {
@@ -289,7 +291,9 @@ class Variation {
     T* own = step_.p(2);
     double* plain = step.slope();
     inputs_with(ws_, t, whole + nz);
-    for (int i = 0; i < form.n(); ++i) d[i] = X(0), own[i] = T(0), plain[i] = 0;
+    for (int i = 0; i < form.n(); ++i) d[i] = X(0);
+    for (int i = nz; i < form.n(); ++i) own[i] = T(0);
+    for (int i = 0; mass_moves_ && i < form.n(); ++i) plain[i] = 0;
     for (int k = 0; k < ws_.n_branches; ++k) {
       T rate = As<X>::number(form.rate(k, step.point()), form.rate(k, y));
       if (ws_.sys.prescribed > 0) rate += offset_rate(ws_, k);
@@ -349,16 +353,20 @@ class Variation {
     }
   }
 
-  /// Change of the slopes with time along the motion at the start of a part of length h, to second order.
+  /// Change of the slopes with time along the motion at the start of a part of length h: to first order close by where
+  /// that is all that the tolerance sees, else to second order. docs/theory/gradients.md (20)
   template <class X>
   void drift_at_start(double h, const X* start, X* drift) {
     const X* first = row<X>(SlopeRow::first);
     X *near = row<X>(1), *far = row<X>(2);
-    slopes_at(ahead, start, near), slopes_at(2 * ahead, start, far);
-    const double per = 1 / (2 * ahead * h);
+    const bool once = ws_.options.rtol >= loose;
+    const double reach = once ? look_once_ : ahead, per = 1 / (reach * h);
+    slopes_at(reach, start, near);
+    if (!once) slopes_at(2 * reach, start, far);
     for (int i = 0; i < form.n(); ++i) {
-      X x = near[i] * (4 * per);
-      add_times(-3 * per, first[i], x), add_times(-per, far[i], x);
+      X x = near[i] * (once ? per : 2 * per);
+      add_times(once ? -per : -1.5 * per, first[i], x);
+      if (!once) add_times(-0.5 * per, far[i], x);
       drift[i] = x;
     }
   }
