@@ -35,12 +35,11 @@ class Tape {
     return n_++;
   }
   /// The number of a weighted sum of n numbers: nodes one behind the other, each but the first with that before it.
+  /// There are n + 1 numbers, of which an even count is used.
   [[gnu::noinline]] std::int32_t sum(int n, const std::int32_t* id, const double* by) {
     if (n_ + n / 2 >= room_) return full_ = true, 0;
-    for (int j = 0; j < n; j += 2) {
-      const bool two = j + 1 < n;
-      node_[n_++] = {j > 0 ? ~id[j] : id[j], two ? id[j + 1] : 0, by[j], two ? by[j + 1] : 0};
-    }
+    node_[n_++] = {id[0], id[1], by[0], by[1]};
+    for (int j = 2; j < n; j += 2) node_[n_++] = {~id[j], id[j + 1], by[j], by[j + 1]};
     return n_ - 1;
   }
   bool is_full() const { return full_; }
@@ -161,8 +160,8 @@ struct TapedSum {
   static constexpr int room = 8;
   double probe = 0;
   mutable int n = 0;
-  mutable std::int32_t id[room];
-  mutable double by[room];
+  mutable std::int32_t id[room + 1];
+  mutable double by[room + 1];
 
   TapedSum() = default;
   explicit TapedSum(double) {}
@@ -177,7 +176,9 @@ struct TapedSum {
 
   /// One number is left, or none.
   void settle() const {
-    if (n > 1) set_number(Tape::current()->sum(n, id, by));
+    if (n < 2) return;
+    id[n] = 0, by[n] = 0;
+    set_number(Tape::current()->sum(n, id, by));
   }
   /// Its number, 0: a constant.
   std::int32_t number() const {
