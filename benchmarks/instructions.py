@@ -30,7 +30,7 @@ def counted(name: str, calls: int) -> int:
     command = [*VALGRIND, sys.executable, "-m", "benchmarks.instructions", name, str(calls)]
     same = {**os.environ, "PYTHONHASHSEED": "0"}
     told = subprocess.run(command, capture_output=True, text=True, check=True, cwd=ROOT, env=same).stderr
-    return int(told.partition("I refs:")[2].split()[0].replace(",", ""))
+    return int(told.rpartition("refs:")[2].split()[0].replace(",", ""))
 
 
 @cache
