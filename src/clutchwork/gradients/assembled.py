@@ -5,7 +5,7 @@ from __future__ import annotations
 import warnings
 from collections.abc import Callable, Sequence
 from dataclasses import field, replace
-from functools import partial
+from functools import cached_property, partial
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -89,10 +89,14 @@ class WordStructure:
 
     def is_that_of(self, words: Array) -> bool:
         """Whether other words are built alike: they have the same length, and the same words that are not numbers."""
-        if len(words) != len(self.words):
-            return False
-        fixed = ~self.is_number
-        return np.array_equal(words.view(np.int64)[fixed], self.words.view(np.int64)[fixed])
+        places, known = self._fixed
+        return len(words) == len(self.words) and np.array_equal(words.view(np.int64)[places], known)
+
+    @cached_property
+    def _fixed(self) -> tuple[Places, NDArray[np.int64]]:
+        # words that are not numbers
+        places = np.flatnonzero(~self.is_number)
+        return places, self.words.view(np.int64)[places]
 
 
 @dataclass(frozen=True, eq=False)

@@ -77,7 +77,8 @@ def decided(grazes: Array, events: Array) -> Array:
     What passes from one piece of a law or a table to the next, and what bounces, may do so slowly: the motion goes on
     as it was, or jumps by less the slower it is.
     """
-    known = [number for number, kind in enumerate(grazes[:, KIND].tolist()) if kind in guards("decides")]
+    deciders = guards("decides")
+    known = [number for number, kind in enumerate(grazes[:, KIND].tolist()) if kind in deciders]
     if not known:
         return grazes[:0]
     is_change = (events[:, AT["from"]] != events[:, AT["to"]]) | (events[:, AT["cause"]] == JAM)
@@ -176,7 +177,7 @@ def decided_at_knots(
     Parameters: knots, instants of all [s]. Where a signal jumps the knot is what makes them do so.
     """
     changed = _locking(events)
-    close = changed[_near(changed[:, AT["time"]], knots)]
+    close = changed[_near(changed[:, AT["time"]], knots)] if len(changed) else changed
     jumps = grazes[grazes[:, KIND] < 0, TIME] if len(close) else knots
     for event in close:
         time = float(event[AT["time"]])

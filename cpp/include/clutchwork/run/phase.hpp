@@ -439,7 +439,7 @@ class Phase : public StepSize<typename Form::Scalar> {
   bool follow(double s)
     requires has_tangents<T>
   {
-    varied_.rest();
+    if (s <= 0) varied_.rest();
     for (double at = 0; at < s;) {
       const double to = varied_.follow(at, s, end_of_step());
       if (to < 0) return leave(Status::step_collapse), false;
