@@ -100,8 +100,8 @@ def ending(made: Plain, base: Any) -> list[Fault]:
         return []
     if base.status == "jammed" and JAMS["light"][0] in base.message:
         return []
-    # a freewheel, or a gear that locks itself, behind a ratio that passes zero: whatever it held, what turns on the other
-    # side would turn it backward
+    # a freewheel, or a gear that locks itself, behind a ratio that passes zero: whatever it held, what turns on the
+    # other side would turn it backward
     turned = base.status == "unbalanced" or (base.status == "jammed" and JAMS["turned"][0] in base.message)
     if turned and passes_zero(base):
         return []
