@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import field, replace
+from functools import cached_property
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -90,7 +91,7 @@ class Wiring:
     unused: frozenset[str] = frozenset()  # inputs of unused features
     composites: tuple[Component, ...] = ()  # those with signals of their own
 
-    @property
+    @cached_property
     def row_size(self) -> int:
         """Numbers in one output row."""
         return max((part.stop for part in self.columns.values()), default=0)

@@ -8,6 +8,8 @@ from functools import cached_property
 from typing import TYPE_CHECKING, Any, ClassVar, NamedTuple, Protocol, TypeAlias, cast
 
 from clutchwork.base.classes import PLAIN, dataclass
+from clutchwork.base.errors import UnknownName, near
+from clutchwork.base.quote import listed, quote
 from clutchwork.declare import to_si
 
 if TYPE_CHECKING:
@@ -289,9 +291,16 @@ class Component(Element):
         return {}
 
     def part(self, name: str) -> Element | ThermalNode | Node:
-        """A part by its name within this component; KeyError when there is none."""
-        named = {part.name: part for part in self.parts()}
-        return named[f"{self.name}.{name}"]
+        """A part by its name within this component; UnknownName, which is a KeyError, when there is none."""
+        try:
+            named = {str(part.name).removeprefix(f"{self.name}."): part for part in self.parts()}
+        except (AttributeError, TypeError):
+            raise UnknownName(
+                f"{self.name} has values that make no parts; `check` of its driveline names them"
+            ) from None
+        if name not in named:
+            raise UnknownName(f"{self.name} has no part {quote(name)}{near(name, named, f'parts: {listed(named)}')}")
+        return named[name]
 
     def start_ratio(self) -> float:
         """Of a transmission: its ratio at the start."""

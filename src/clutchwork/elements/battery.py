@@ -29,7 +29,8 @@ class BatteryAnswer(NamedTuple):
         State("charge", "1", "what is in it, over its capacity"),
         State("energy", "J", "taken out of its cells since the start, at their open-circuit voltage"),
         State("loss", "J", "heat of its resistance since the start"),
-        State("unserved", "J", "demanded beyond its limits since the start, minus what it refused to take"),
+        State("unserved", "J", "demanded and not given since the start, beyond its limits"),
+        State("refused", "J", "offered and not taken since the start, beyond its limits"),
     ),
     hooks=("margin", "cross"),
 )
@@ -40,8 +41,8 @@ class Battery(Component):
     negative where it charges; a signal or a number for other consumers. The current follows from `voltage current -
     resistance current^2 = power`. Use it in hybrids and electric vehicles. Controllers read its charge as a signal of
     the run and ask `limits`; energy that motors demand beyond these, or from an empty battery, is counted as
-    `unserved`, so that `sum of loads = energy - loss + unserved` always holds. It may fall again while the battery
-    refuses recuperated energy: look at it over the whole run.
+    `unserved`, what they return beyond them, or into a full one, as `refused`, so that
+    `sum of loads = energy - loss + unserved - refused` always holds.
 
     Source: L. Guzzella, A. Sciarretta, Vehicle Propulsion Systems, 3rd ed., Springer 2013, section 4.5.
     """
@@ -86,11 +87,11 @@ class Battery(Component):
 
     def initial_states(self) -> tuple[float, ...]:
         """Charge at the start; nothing was taken yet."""
-        return (self.initial_charge, 0.0, 0.0, 0.0)
+        return (self.initial_charge, 0.0, 0.0, 0.0, 0.0)
 
     def state_scales(self) -> tuple[float, ...]:
         """The solver follows the charge in ampere seconds."""
-        return (1.0 / self.capacity, 1.0, 1.0, 1.0)
+        return (1.0 / self.capacity, 1.0, 1.0, 1.0, 1.0)
 
     def voltage(self, charge: float) -> float:
         """Open-circuit voltage [V] at a charge."""

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from itertools import pairwise
+
 from clutchwork.declare import Component, Points, Role, SignalLike, State, component, curve, option, signal
 
 
@@ -27,4 +29,6 @@ class Road(Component):
 
     def initial_states(self) -> tuple[float, ...]:
         """Slope and position [m] at the start."""
-        return (0.0, self.initial_position)
+        at = self.initial_position
+        here = [(y - x) / (b - a) for (a, x), (b, y) in pairwise(self.elevation) if a <= at < b]
+        return (here[0] if here else 0.0, at)

@@ -109,7 +109,8 @@ class Doubts:
                 yield Doubt(f"{why}; ask before or behind it", self._only(number), self._moving_events(line.at))
 
     def _asked_at_knots(self) -> Iterator[Doubt]:
-        for number, line in enumerate(self.lines):
+        knots = self.run.primal.knots
+        for number, line in enumerate(self.lines if len(knots.times) or len(knots.meets) else ()):
             if line.at is not None and (self._ends_at_knot(line.at) or self._bends(line)):
                 why = f"{line.name} is asked for at a knot that moves, {line.at:.9g} s; ask before or behind it"
                 yield Doubt(why, self._only(number), self._moving_knots())

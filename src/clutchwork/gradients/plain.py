@@ -205,7 +205,7 @@ def _nothing(columns: Sequence[int]) -> tuple[Array, Array]:
 def _by_variant(parts: Any, count: int, width: int) -> list[tuple[Array, Array]]:
     """Times and rows of each variant, from what each thread has."""
     found = [(np.zeros(0), np.zeros((0, width)))] * count
-    for variants, counts, times, rows, _ in parts:
+    for variants, counts, times, rows, *_ in parts:
         ends = np.cumsum(counts)
         for variant, begin, end in zip(variants.tolist(), (ends - counts).tolist(), ends.tolist(), strict=True):
             found[variant] = times[begin:end], rows[begin:end]

@@ -127,6 +127,10 @@ class Actuation:
         drivers = [self.drivers[name] for name in names if name in self.drivers]
         return max([with_.fill_time, *(SETTLE * one.of.lag + one.fill_time * (1.0 - one.level) for one in drivers)])
 
+    def settling(self, names: Iterable[str]) -> float:
+        """For which commands of elements are ahead of their torques [s]."""
+        return max([0.0, *(SETTLE * self.drivers[name].of.lag for name in names if name in self.drivers)])
+
     def start(self) -> None:
         """As a run begins: what is closed is filled and has its torque."""
         for name, one in self.drivers.items():
