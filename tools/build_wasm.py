@@ -126,7 +126,7 @@ def shrunk(module: Path) -> Path:
         return module
     made = module.with_name("shrunk.wasm")
     features = [f"--enable-{name}" for name in FEATURES]
-    command = ["node", OPTIMISER, module, "-Oz", *features, "-o", made]
+    command: list[str | Path] = ["node", OPTIMISER, module, "-Oz", *features, "-o", made]
     subprocess.run(command, check=True)  # noqa: S603 - the optimiser
     return made
 

@@ -82,8 +82,8 @@ def test_twins_of_more_random_models() -> None:
     sweep(all_of, range(1024, 1024 + amount(120)))
 
 
-# models of campaigns as they were drawn, or made smaller: a new element, or another order of fields, makes another model
-# of a seed
+# models of campaigns as they were drawn, or made smaller: a new element, or another order of fields, makes another
+# model of a seed
 KEPT: dict[str, Plain] = json.loads(Path(__file__).with_name("kept_models.json").read_text(encoding="utf-8"))
 # those that fail for a cause that is known and not mended, by what it is
 OPEN = {

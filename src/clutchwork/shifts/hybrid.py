@@ -113,7 +113,7 @@ class HybridController:
     def request(self, direction: str) -> None:
         """Forward, "D", or backward, "R": where the pedal drives to from now on."""
         if direction not in (FORWARD, REVERSE):
-            raise UseError(CALL, [f"{quote(direction)} is no direction: request {FORWARD!r} or {REVERSE!r}"])
+            raise UseError(CALL, [f"{quote(direction)} is not a direction: request {FORWARD!r} or {REVERSE!r}"])
         self.direction = direction
 
     @property
