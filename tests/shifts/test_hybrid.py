@@ -200,5 +200,5 @@ def test_what_is_wrong_is_said() -> None:
     both = {name: TorqueSource(f"{name}.command", -1.0, 1.0) for name in box.machines}
     with pytest.raises(cw.UseError, match="'2' is not a split"):
         HybridController(box, plant, machines=both, mode="2", **more)
-    with pytest.raises(cw.UseError, match="'P' is no direction: request 'D' or 'R'"):
+    with pytest.raises(cw.UseError, match="'P' is not a direction: request 'D' or 'R'"):
         HybridController(box, plant, machines=both, **more).request("P")
