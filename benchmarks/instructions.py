@@ -1,7 +1,7 @@
 """Derivatives over plain runs by instructions, which no load of a machine changes; valgrind counts them.
 
 python -m benchmarks instructions          the table
-python -m benchmarks.instructions NAME 11  eleven calls, to be counted
+python -m benchmarks.instructions NAME 22  so many calls, to be counted
 """
 
 from __future__ import annotations
@@ -22,7 +22,7 @@ from benchmarks.report import Row  # noqa: E402
 
 VALGRIND = ("valgrind", "--tool=cachegrind", "--cache-sim=no", "--cachegrind-out-file=/dev/null")
 # calls of two processes, whose difference has no start in it
-FEW, MANY = 1, 11
+FEW, MANY = 2, 22
 
 
 def counted(name: str, calls: int) -> int:
