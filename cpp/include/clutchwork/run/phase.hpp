@@ -410,7 +410,7 @@ class Phase : public StepSize<typename Form::Scalar> {
 
   /// Whether a step towards rest has run over a change of the coefficient: the two solutions whose difference is its
   /// error may agree by chance. docs/theory/events.md, rule 7
-  bool misses_rest(const Hit& hit) {
+  CLUTCHWORK_INLINE bool misses_rest(const Hit& hit) {
     if (!calls_.stiff || !hit.none() || !nears_rest(taken_form().ws)) return false;
     fit(taken_form(), taken_step());
     const double missed = error_until(taken_form(), taken_step(), inner);
