@@ -47,7 +47,8 @@ def test_limits(power: float, current: float) -> None:
     run = turning(load=power, **limits).simulate(3.0)
     given = (200.0 - 0.4 * current) * current
     assert run["battery.charge"][-1] == pytest.approx(0.5 - 3.0 * current / 3600.0, rel=1e-12)
-    assert run["battery.unserved"][-1] == pytest.approx(3.0 * (power - given), rel=1e-12)
+    assert run["battery.unserved"][-1] == pytest.approx(max(0.0, 3.0 * (power - given)), rel=1e-12)
+    assert run["battery.refused"][-1] == pytest.approx(max(0.0, 3.0 * (given - power)), rel=1e-12)
     battery = cw.Battery("battery", **FLAT, **limits, load=0.0)  # type: ignore[arg-type]
     answer = battery.answer(0.5, power)
     assert answer == pytest.approx((current, 200.0 - 0.4 * current, 0.4 * current**2, given), rel=1e-12)
@@ -65,12 +66,13 @@ def test_empty_and_full() -> None:
     # events are located to the tolerance of the run
     assert run["battery.unserved"][run.time <= 30.0][-1] == pytest.approx(4000.0 * (30.0 - emptied), rel=1e-6)
     assert charge[30.0] == pytest.approx(0.0, abs=1e-9)
-    missed = 4000.0 * (90.0 - filled)
-    assert run["battery.unserved"][-1] == pytest.approx(4000.0 * (30.0 - emptied) - missed, rel=1e-6)
+    assert run["battery.unserved"][-1] == pytest.approx(4000.0 * (30.0 - emptied), rel=1e-6)
+    assert run["battery.refused"][-1] == pytest.approx(4000.0 * (90.0 - filled), rel=1e-6)
     assert max(charge.values()) == pytest.approx(1.0, abs=1e-8)
     assert charge[100.0] < 1.0
     asked = 4000.0 * 30.0 - 4000.0 * 60.0 + 1000.0 * 10.0
     total = run["battery.energy"][-1] - run["battery.loss"][-1] + run["battery.unserved"][-1]
+    total -= run["battery.refused"][-1]
     # the kink of each limit is an event
     assert total == pytest.approx(asked, rel=1e-9)
 
@@ -102,7 +104,7 @@ def test_energies_close_with_two_motors(method: str) -> None:
     d.add(cw.QuadraticTorque("load", shaft=shaft, nominal_torque=-20.0, nominal_speed=100.0))
     run = d.simulate(8.0, method=method, rtol=1e-8)
     drawn = run["first.electric_energy"] + run["other.electric_energy"] + 250.0 * run.time
-    given = run["battery.energy"] - run["battery.loss"] + run["battery.unserved"]
+    given = run["battery.energy"] - run["battery.loss"] + run["battery.unserved"] - run["battery.refused"]
     # both are integrals of the same powers, one as a state, one by quadrature
     assert np.abs(drawn - given).max() <= 1e-6 * np.abs(drawn).max()
     assert abs(run.energy.residual) <= 1e-6 * np.abs(drawn).max()
@@ -141,7 +143,7 @@ def test_derivatives_and_steps_of_one_length() -> None:
     # power by torque is the speed, current by power 1/(U - 2 R I)
     assert system.A[row, column] == pytest.approx(voltage * 50.0 / (voltage - 2.0 * resistance * current), rel=1e-9)
     run = one_motor().simulate(2.0, method="fixed", step=1e-3)
-    given = run["battery.energy"] - run["battery.loss"] + run["battery.unserved"]
+    given = run["battery.energy"] - run["battery.loss"] + run["battery.unserved"] - run["battery.refused"]
     # the power of a step is its work; losses are those of its middle
     assert given == pytest.approx(run["motor.electric_energy"], abs=1e-6 * np.abs(given).max())
 

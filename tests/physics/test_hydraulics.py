@@ -344,6 +344,38 @@ def test_no_pressure_falls_below_vacuum(kind: str) -> None:
     assert run["store.pressure"].min() > -101325.0
 
 
+def test_a_pump_near_vacuum_delivers_less() -> None:
+    """At 10 kPa absolute its chambers are half full: half of its oil, and half of its torque, by (13)."""
+    d = cw.Driveline("suction")
+    motor = d.shaft("motor", inertia=0.3)
+    d.add(cw.PrescribedSpeed("drive", shaft=motor, speed=100.0))
+    line = d.add(cw.OilVolume("line", volume=1e-2, air=0.0))
+    d.add(cw.Pump("pump", shaft=motor, inlet=1e4 - 101325.0, outlet=line, displacement=2e-5, efficiency=1.0))
+    run = d.simulate(0.5, rtol=1e-9)
+    flow = 0.5 * 2e-5 / (2.0 * pi) * 100.0
+    assert run["line.pressure"] == pytest.approx(BULK / 1e-2 * flow * run.time, rel=1e-9)
+    drop = run["line.pressure"] + 101325.0 - 1e4
+    assert run["pump.torque"] == pytest.approx(-0.5 * 2e-5 / (2.0 * pi) * drop, rel=1e-9)
+    assert run["pump.oil.energy"][-1] == pytest.approx(-run["pump.work"][-1], rel=1e-9)
+
+
+def test_a_pump_gets_no_more_oil_than_there_is() -> None:
+    """From a closed volume it delivers what air in that makes room for, a tenth of what it turned for."""
+    d = cw.Driveline("suction")
+    motor = d.shaft("motor", inertia=0.3)
+    d.add(cw.PrescribedSpeed("drive", shaft=motor, speed=100.0))
+    store, line = d.add(cw.OilVolume("store", volume=1e-4)), d.add(cw.OilVolume("line", volume=1e-2, air=0.0))
+    d.add(cw.Pump("pump", shaft=motor, inlet=store, outlet=line, displacement=2e-5))
+    run = d.simulate(2.0)
+    given, low = run["line.pressure"][-1] / BULK * 1e-2, run["store.pressure"][-1]
+    # the tolerance of the run
+    assert given == pytest.approx(1e-4 * (0.005 * (101325.0 / (low + 101325.0) - 1.0) - low / BULK), rel=1e-4)
+    assert given < 0.1 * 2e-5 / (2.0 * pi) * 100.0 * 2.0
+    assert low + 101325.0 > 1e3
+    (hint,) = run.hints.of("store")
+    assert hint.rule == "starved pump"
+
+
 @pytest.mark.parametrize("line", [1.2e6, cw.Constant(1.2e6)])
 def test_a_valve_body_starts_with_the_pressure_of_its_line(line: Any) -> None:
     d = cw.Driveline("body")

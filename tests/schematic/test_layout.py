@@ -11,6 +11,7 @@ import pytest
 import clutchwork as cw
 from clutchwork.schematic.diagram import diagram
 from clutchwork.schematic.moment import Snapshot
+from clutchwork.schematic.pen import around
 from clutchwork.schematic.picture import Schematic
 from clutchwork.schematic.sheet import sheet
 from reference.msl.elements import missing
@@ -45,6 +46,8 @@ MODELS = {
     **{f"random {seed}": random_drivelines.describe(seed).driveline() for seed in range(12)},
     **{f"large {seed}": random_large.driveline(seed) for seed in range(5)},
     "eight-speed": schematics.eight_speed(),
+    "circuit of oil": schematics.circuit(),
+    "circuit with a sump": schematics.circuit(suction=False),
     # seed 1 needs lines that are kept apart in a second pass
     **{f"tangle {seed}": schematics.tangle(seed) for seed in range(8)},
     **references(),
@@ -202,6 +205,28 @@ def test_a_long_driveline_is_folded_where_one_line_goes_on() -> None:
     for made in (wide, folded, narrow):
         assert schematics.overlaps(made) == []
         assert len(made.pieces) == len(wide.pieces)
+
+
+def test_ports_of_one_volume_are_joined() -> None:
+    """The line of a volume ends at every element that has it at a port; a port at the pressure around is a tank."""
+    d = schematics.circuit(suction=False)
+    made = d.draw().sheet
+    ends = {
+        "tank": ["filter", "regulator"], "line": ["pump", "regulator", "valve", "pipe"], "port": ["valve", "piston"],
+        "back": ["valve", "return"], "store": ["pipe"],
+    }  # fmt: skip
+    boxes = {piece.name: around(piece.marks) for piece in made.pieces}
+    for node, elements in ends.items():
+        points = [point for wire in made.wires if wire.node == node for piece in wire.pieces for point in piece]
+        for name in (node, *elements):
+            box = boxes[name]
+            # the line of a piston ends at the cell of what it presses
+            assert any(box.left - 6.0 <= x <= box.right + 6.0 and box.low <= y <= box.high for x, y in points), name
+    written = {piece.name: [text.text for text in piece.text[1:]] for piece in made.pieces}
+    # what was not given is not written
+    assert written["line"] == written["pipe"] == written["pump"] == written["return"] == []
+    assert written["regulator"] == ["1.2 MPa"]
+    assert written["valve"] == ["300 kPa"]
 
 
 def test_warnings_of_a_model_are_not_those_of_its_picture() -> None:

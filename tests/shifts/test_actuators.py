@@ -60,8 +60,8 @@ def test_elements_that_are_pressed_directly_have_none() -> None:
         cw.shifts.fill_test(system, BOX, limits=limits)
 
 
-def test_a_lag_is_led() -> None:
-    """A torque that is asked for on a ramp is there on the ramp, one period behind it at most."""
+def test_no_more_is_asked_for_than_is_wanted() -> None:
+    """Led valves and pistons overshoot: on a ramp the torque stays behind by the lag and a period, and never ahead."""
     lag, period, slope = 0.04, 0.01, 500.0
     one = cw.shifts.ElementActuator("x.command", (0.0, 1e6), (0.0, 1e3), 0.0, 0.0, lag)
     driver, torque, worst = ActuatorDriver(one, 0.0, 0.0, level=1.0), 0.0, 0.0
@@ -69,24 +69,21 @@ def test_a_lag_is_led() -> None:
         time = number * period
         command = driver.command(slope * time, period if number else 0.0, period, open_=False)
         torque += (command / 1e3 - torque) * (1.0 - np.exp(-period / lag))
-        if number > 5:
-            worst = max(worst, abs(slope * time - torque))
-    # half of a lag ahead at most is asked for; without that it were 20 N m behind
-    assert worst < 0.6 * slope * lag
+        behind = slope * (time + period) - torque
+        worst = max(worst, behind)
+        assert behind > 0.0
+    assert worst < slope * (lag + period)
 
 
 @pytest.mark.parametrize("pistons", [False, True])
 def test_all_shifts_through_valves_and_pistons(pistons: bool) -> None:
-    """Each gear is reached, with power and without; the hole is that of direct pressure within 25 %.
-
-    Half as much jerk again: pistons lag, and in downshifts the engine leaves little of it where they do not.
-    """
+    """Each gear is reached, with power and without; jerk and hole are those of direct pressure within 20 %."""
     pairs = list(permutations(FORWARD, 2))
     _, jerk, hole = felt(lambda gear, at: car(BOX, gear, at), pairs)
     count, late, hole_late = felt(lambda gear, at: hydraulic(BOX, gear, at, pistons=pistons), pairs)
     assert count == 112
-    assert late < 1.5 * jerk
-    assert hole_late < 1.25 * hole
+    assert late < 1.2 * jerk
+    assert hole_late < 1.2 * hole
 
 
 @pytest.mark.parametrize("pistons", [False, True])

@@ -42,11 +42,19 @@ def hybrid(box: cw.Gearbox, mode: str, **battery: float) -> tuple[cw.Driveline, 
 
 
 def controlled(
-    box: cw.Gearbox, d: cw.Driveline, engine: cw.Engine, store: cw.Battery, full: float = 900.0, charge: float = 0.6
+    box: cw.Gearbox,
+    d: cw.Driveline,
+    engine: cw.Engine,
+    store: cw.Battery,
+    full: float = 900.0,
+    charge: float = 0.6,
+    **more: float,
 ) -> tuple[cw.Simulator, HybridController]:
     system = d.assemble()
     machines = {name: TorqueSource(f"{name}.command", -MOST, MOST, power=(-POWER, POWER)) for name in box.machines}
-    settings = HybridSettings([(0.0, full), (100.0, full), (300.0, 0.5 * full)], SPEEDS, charge, limits=store.limits)
+    settings = HybridSettings(
+        [(0.0, full), (100.0, full), (300.0, 0.5 * full)], SPEEDS, charge, limits=store.limits, **more
+    )
     plant = cw.shifts.plant_of(system, box)
     made = HybridController(box, plant, machines=machines, engine=EngineSource.of(engine), settings=settings)
     return cw.Simulator(system), made
@@ -120,7 +128,7 @@ def test_mode_shifts_up_and_down() -> None:
         assert abs(carried[1]) < 0.1 * max(abs(carried[0]), 300.0)
         around = (time > begin) & (time < record.end + 0.3)
         assert np.max(felt[around]) < 10.0
-    assert run["battery.unserved"][-1] == pytest.approx(0.0, abs=1e-6)
+    assert [run[f"battery.{name}"][-1] for name in ("unserved", "refused")] == pytest.approx([0.0, 0.0], abs=1e-6)
     assert abs(run.energy.residual) < 1e-6 * run.energy.turnover
 
 
@@ -138,9 +146,48 @@ def test_a_weak_battery_is_kept_within_its_limits() -> None:
         assert low - 0.03 * POWER < np.min(power) < np.max(power) < high + 0.03 * POWER
         most.append(float(np.max(power)))
         speeds.append(float(run.at(np.array([8.0]))["car.speed"][0]))
-        assert abs(run["battery.unserved"][-1]) < 0.01 * run.energy.turnover
+        assert run["battery.unserved"][-1] + run["battery.refused"][-1] < 0.01 * run.energy.turnover
     assert most[1] > 5.0 * most[0]
     assert speeds[0] == pytest.approx(speeds[1], rel=0.05)
+
+
+@pytest.mark.parametrize(("name", "mode"), [("toyota-p410", "split"), ("gm-2ml70", "EVT1")])
+def test_backward_and_forward_again(name: str, mode: str) -> None:
+    """Machines drive backward, brake to rest and drive forward; the box stays in its mode meanwhile."""
+    box = cw.Gearbox.load(name)
+    sim, control = controlled(box, *hybrid(box, mode))
+    ways = []
+    for direction, until in (("R", 6.0), ("D", 14.0)):
+        control.request(direction)
+        run = drive(sim, control, until, throttle=0.3, sensed=CHARGE)
+        ways.append(float(run["car.speed"][-1]))
+    assert ways[0] < -1.0
+    assert ways[1] > 1.0
+    control.request("R")
+    run = drive(sim, control, 40.0, throttle=-0.5, sensed=CHARGE)
+    # pulled back where the driver brakes in reverse, never faster forward
+    assert abs(run["car.speed"][-1]) <= ways[1] + 0.1
+    assert not [record for record in control.records if not record.reached]
+
+
+def test_the_engine_stands_where_little_is_wanted() -> None:
+    """Below `electric` the machines drive alone and bring the engine to rest; above it they start it."""
+    box = cw.Gearbox.load("toyota-p410")
+    sim, control = controlled(box, *hybrid(box, "split", max_current=150.0), full=1800.0, electric=12e3)
+    run = drive(sim, control, 20.0, throttle=lambda t: 0.2 if t < 8.0 else 0.6 if t < 16.0 else -0.1, sensed=CHARGE)
+    there = run.at(np.array([6.0, 15.0, 19.9]))
+    crank, car, burning = (there[name] for name in ("crank.speed", "car.speed", "engine.torque"))
+    # friction holds it
+    assert abs(crank[0]) < 1.0
+    assert car[0] > 1.0
+    assert crank[1] > 110.0
+    assert burning[1] > 50.0
+    assert abs(crank[2]) < 1.0
+    # nobody feels it start: docs/theory/jerk.md
+    time = np.arange(1.0, 19.5, 1e-3)
+    felt = np.abs(cw.shifts.jerk(np.interp(time, run.time, run["car.speed"]), 1e-3))
+    quiet = (time < 7.5) | ((time > 8.5) & (time < 15.5)) | (time > 16.5)
+    assert np.max(felt[quiet]) < 10.0
 
 
 def test_what_is_wrong_is_said() -> None:
@@ -153,3 +200,5 @@ def test_what_is_wrong_is_said() -> None:
     both = {name: TorqueSource(f"{name}.command", -1.0, 1.0) for name in box.machines}
     with pytest.raises(cw.UseError, match="'2' is not a split"):
         HybridController(box, plant, machines=both, mode="2", **more)
+    with pytest.raises(cw.UseError, match="'P' is not a direction: request 'D' or 'R'"):
+        HybridController(box, plant, machines=both, **more).request("P")

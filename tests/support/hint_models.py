@@ -200,7 +200,25 @@ def towed(speed: float) -> cw.Driveline:
     return d
 
 
+def pumped(*, relief: bool = True, swapped: bool = False, filter_area: float = 1e-4) -> cw.Driveline:
+    """A pump with a filter before it, a line with a way valve behind it."""
+    d = cw.Driveline("pumped")
+    shaft = d.shaft("shaft", inertia=0.1, speed=150.0)
+    d.add(cw.PrescribedSpeed("motor", shaft=shaft, speed=150.0))
+    suction, line, port = (d.add(cw.OilVolume(name, volume=1e-4)) for name in ("suction", "line", "port"))
+    d.add(cw.Orifice("filter", inlet=0.0, outlet=suction, area=filter_area))
+    d.add(cw.Pump("pump", shaft=shaft, inlet=suction, outlet=line, displacement=2e-5))
+    ports = {"supply": port, "clutch": line} if swapped else {"supply": line, "clutch": port}
+    d.add(cw.SpoolValve("valve", **ports, command=4e5, supply_area=1e-5, exhaust_area=1e-5, span=2e4))
+    if relief:
+        d.add(cw.ReliefValve("relief", inlet=line, command=1.5e6, area=6e-5))
+    return d
+
+
 CASES: dict[str, Case] = {
+    "no relief valve": Case(lambda: pumped(relief=False), pumped, 0.05),
+    "ports swapped": Case(lambda: pumped(swapped=True), pumped, 0.05),
+    "starved pump": Case(lambda: pumped(filter_area=2e-5), pumped, 0.3),
     "unknown there": Case(lambda: towed(-20.0), lambda: towed(20.0), 0.2),
     "never locks": Case(lambda: launch(60.0), lambda: launch(150.0), 2.0),
     "lifts off": Case(lambda: belted(300.0), lambda: belted(900.0), 1.0),

@@ -193,3 +193,24 @@ def _long(a: Rect, b: Rect) -> bool:
 def texts(sheet: Sheet) -> list[str]:
     """All that is written."""
     return [mark.text for mark in sheet.marks if isinstance(mark, Text)]
+
+
+def circuit(*, suction: bool = True) -> cw.Driveline:
+    """Two lines of a pump, a valve with three volumes, an accumulator, a clutch with its piston."""
+    d = cw.Driveline("circuit")
+    motor, load = d.shaft("motor", inertia=0.3, speed=180.0), d.shaft("load", inertia=0.25)
+    d.add(cw.Torque("drive", shaft=motor, torque=60.0))
+    tank, line, port, back = (d.add(cw.OilVolume(name, volume=1e-4)) for name in ("tank", "line", "port", "back"))
+    oil = d.add(cw.HydraulicOil("oil", temperature=353.15, viscosity_40=32e-6, viscosity_100=6.2e-6))
+    store = d.add(cw.Accumulator("store", precharge=6e5, capacity=3e-4))
+    d.add(cw.Orifice("filter", inlet=0.0, outlet=tank, area=2e-4, viscosity=(oil, "viscosity")))
+    d.add(cw.Orifice("pipe", inlet=line, outlet=store, area=1e-5))
+    d.add(cw.Orifice("return", inlet=back, area=1e-4))
+    d.add(cw.Pump("pump", shaft=motor, inlet=tank if suction else 0.0, outlet=line, displacement=1.6e-5))
+    d.add(cw.ReliefValve("regulator", inlet=line, outlet=tank, command=1.2e6, area=4e-5))
+    areas = {"supply_area": 2e-5, "exhaust_area": 2e-5}
+    d.add(cw.SpoolValve("valve", supply=line, clutch=port, exhaust=back, command=3e5, **areas))
+    spring = {"preload": 400.0, "spring_rate": 1.5e5, "kiss_stroke": 2e-3, "contact_rate": 2e7}
+    piston = d.add(cw.ClutchActuator("piston", supply_pressure=port, orifice_area=4e-6, piston_area=6e-3, **spring))
+    d.add(cw.Clutch("clutch", base=motor, follower=load, friction=LINING, gain=0.5, normal_force=piston))
+    return d

@@ -5,11 +5,11 @@ from __future__ import annotations
 import inspect
 import warnings
 from itertools import islice
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from clutchwork.base.classes import dataclass
 from clutchwork.base.plural import counted
-from clutchwork.base.quote import LONGEST, printable, shortened
+from clutchwork.base.quote import LONGEST, printable, quote, shortened
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Sequence
@@ -136,6 +136,12 @@ class FileError(ClutchworkError, ValueError):
 
 class FMUError(ClutchworkError, ValueError):
     """An FMU of other people that cannot be read, or that fails in a run, with its name and the instant."""
+
+
+def expect(call: str, name: str, value: object, kind: Any, remedy: str) -> None:
+    """UseError where an argument is of another kind."""
+    if not isinstance(value, kind):
+        raise UseError(call, [f"{name} is {quote(value)}: {remedy}"])
 
 
 # comparing takes time in proportion to the product of both

@@ -14,6 +14,7 @@ from clutchwork.schematic.look import (
     LINE,
     MASS,
     NAME,
+    OIL,
     SHAFT,
     SIGNAL,
     VALUE,
@@ -59,6 +60,8 @@ def line_of(node: Thing) -> MarkStyle:
     """The look of what is attached to a node."""
     if node.what in ("thermal", "ambient", "element"):
         return HEAT
+    if node.what == "oil" or getattr(node.source, "gathers", False):
+        return OIL
     if node.what == "mass":
         return MASS
     heat = node.what == "missing" and type(node.source).__name__ == "ThermalNode"
@@ -75,7 +78,7 @@ def cell_of(thing: Thing, sides: Mapping[str, int], moment: Snapshot, *, values:
 def _node_cell(thing: Thing, moment: Snapshot, values: bool) -> Cell:
     pen, source = SymbolPen(), thing.source
     half = 7.0
-    if thing.what in ("thermal", "ambient"):
+    if thing.what in ("thermal", "ambient", "oil"):
         symbol = symbol_of(source) if hasattr(source, "kind") else AMBIENT if thing.what == "ambient" else CAPACITY
         symbol.draw(pen, Drawn(source, {}, half=symbol.half))
         half = symbol.half
@@ -114,11 +117,12 @@ def _element_cell(thing: Thing, sides: Mapping[str, int], moment: Snapshot, valu
         for port in thing.inner:
             side = _flip(sides, mirrored)[port]
             pen.line((0.0, -symbol.down), (0.0, heights[port]), (side * symbol.half, heights[port]), look=SHAFT)
-        own = {port: side for port, side in sides.items() if port not in thing.inner}
+        own = {port: side for port, side in sides.items() if port not in thing.inner and "." not in port}
         piece = _element_piece(thing, pen, symbol, _flip(own, mirrored), heights, moment, values)
     made, links = [(piece, 0.0, 0.0)], list[Mark]()
     if thing.helpers:
-        _add_helpers(thing, symbol.up, 0.0, made, links, moment, values)
+        _add_helpers(thing, symbol.up, 0.0, made, links, moment, values, sides)
+        _pipe(thing, sides, symbol.half, made, links, heights)
     marks = [mark.moved(x, y) for one, x, y in made for mark in (*one.marks, *one.text)]
     pins = {port: (sides[port], heights.get(port, 0.0)) for port in thing.pins}
     return Cell(thing, made, links, around([*marks, *links]), symbol.half, pins)
@@ -174,9 +178,12 @@ def _add_helpers(
     links: list[Mark],
     moment: Snapshot,
     values: bool,
+    sides: Mapping[str, int],
 ) -> None:
     """Processes above what they drive, side by side, each with a dotted line to it."""
-    pieces = [(helper, _helper_piece(helper, moment, values)) for helper in thing.helpers]
+    # a piston stands where its line comes from
+    order = sorted(thing.helpers, key=lambda one: sum(sides.get(f"{one.name}.{port}", 0) for port in one.pins))
+    pieces = [(helper, _helper_piece(helper, moment, values)) for helper in order]
     boxes = [around([*piece.marks, *piece.text]) for _, piece in pieces]
     wide = sum(box.right - box.left for box in boxes) + APART * (len(boxes) - 1)
     left, pen = x - wide / 2, SymbolPen()
@@ -191,9 +198,27 @@ def _add_helpers(
         if helper.helpers:
             # above the text of this one
             inner = list[Mark]()
-            _add_helpers(helper, at[1] + box.high + 2.0, at[0], made, inner, moment, values)
+            _add_helpers(helper, at[1] + box.high + 2.0, at[0], made, inner, moment, values, {})
             links += inner
     links += pen.marks
+
+
+def _pipe(
+    thing: Thing,
+    sides: Mapping[str, int],
+    half: float,
+    made: list[tuple[SymbolCell, float, float]],
+    links: list[Mark],
+    heights: dict[str, float],
+) -> None:
+    """The line of oil to a piston above what it presses."""
+    for helper in thing.helpers:
+        for port in helper.pins:
+            name, pen = f"{helper.name}.{port}", SymbolPen()
+            x, y = next((x, y) for piece, x, y in made if piece.name == helper.name)
+            heights[name] = y
+            pen.line((x + sides[name] * (symbol_of(helper.source).half - 1.0), y), (sides[name] * half, y), look=OIL)
+            links += pen.marks
 
 
 def _helper_piece(helper: Thing, moment: Snapshot, values: bool) -> SymbolCell:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import field
+from numbers import Real
 from typing import Any, NamedTuple
 
 from clutchwork.base.classes import dataclass
@@ -22,10 +23,10 @@ class Thing:
     """One symbol: a node or an element."""
 
     name: str
-    what: str  # shaft, mass, thermal, ambient, missing, element, heat
+    what: str  # shaft, mass, thermal, ambient, oil, missing, element, heat
     source: Any  # the node or element itself
     pins: dict[str, Thing] = field(default_factory=dict)  # of an element: port -> node
-    fixed: frozenset[str] = frozenset()  # ports at the housing
+    fixed: frozenset[str] = frozenset()  # ports at the housing, or at the sump
     helpers: list[Thing] = field(default_factory=list)  # processes that drive it
     inner: list[str] = field(default_factory=list)  # names of pins at shafts inside of it
 
@@ -86,10 +87,13 @@ class _GraphBuilder:
             self._nodes[id(node)] = Thing(label(node.name), _sort(node), node)
         for thermal in model.thermal:
             self._thermal(thermal)
-        insides = [_inside(component) for component in model.elements]
-        for component, inside in zip(model.elements, insides, strict=True):
+        oil = [component for component in model.elements if type(component).gathers]
+        self._nodes |= {id(component): Thing(label(component.name), "oil", component) for component in oil}
+        others = [component for component in model.elements if not type(component).gathers]
+        insides = [_inside(component) for component in others]
+        for component, inside in zip(others, insides, strict=True):
             self._inner |= dict.fromkeys((node.name for node in inside.nodes), component.name)
-        elements = [self._element(*pair) for pair in zip(model.elements, insides, strict=True)]
+        elements = [self._element(*pair) for pair in zip(others, insides, strict=True)]
         self._join(elements)
         placed = _assisted(elements)
         found = [thing for thing in elements if id(thing) not in placed]
@@ -112,7 +116,13 @@ class _GraphBuilder:
         # a plate of several nodes is drawn as one
         plain = not specs(type(component), "port", "thermal") and not inside.nodes
         whole = plain and component.role is Role.COMPOSITE and bool(inside.thermal)
-        thing = Thing(label(component.name), "thermal" if whole else "element", component, pins, frozenset(fixed))
+        thing = Thing(
+            label(component.name),
+            "thermal" if whole else "element",
+            component,
+            pins,
+            frozenset(fixed) | _sumps(component),
+        )
         for node in inside.thermal:
             key = ("heat", str(node.name))
             if whole:
@@ -122,17 +132,22 @@ class _GraphBuilder:
         if component.role is Role.FLOW:
             for item, _ in specs(type(component), "thermal"):
                 pins[item.name] = self._heat_node(getattr(component, item.name, None))
+        for item, spec in specs(type(component), "signal"):
+            value = getattr(component, item.name, None)
+            if spec.draws and isinstance(value, Component) and type(value).gathers:
+                pins[item.name] = self._node(value)
         for node in inside.heated:
             self._heats.append(Thing(thing.name, "heat", component, {"heat": self._heat_node(node)}))
         return thing
 
     def _node(self, node: object) -> Thing:
-        if isinstance(node, Node) and id(node) in self._nodes:
+        named = isinstance(node, (Node, Component))
+        if named and id(node) in self._nodes:
             return self._nodes[id(node)]
         if isinstance(node, Node) and node.name in self._inner:
             return self._nodes.setdefault(node.name, Thing(label(node.name), _sort(node), node))
-        key = id(node) if isinstance(node, Node) else ("none", str(node))
-        name = node.name if isinstance(node, Node) else node
+        key = id(node) if named else ("none", str(node))
+        name = node.name if isinstance(node, (Node, Component)) else node
         return self._missing.setdefault(key, Thing(label("?" if name is None else name), "missing", node))
 
     def _join(self, elements: list[Thing]) -> None:
@@ -186,11 +201,25 @@ def _assisted(elements: list[Thing]) -> set[int]:
             helper = of.get(id(source))
             if helper is None or helper is thing or id(helper) in placed or source.role is not Role.PROCESS:
                 continue
-            # one that drives itself in a circle stays on its own
-            if not _drives(thing, helper):
+            # one that drives itself in a circle stays on its own, and so does oil that has no room beside its line
+            if not _drives(thing, helper) and (not helper.pins or _has_room(thing, helper)):
                 thing.helpers.append(helper)
+                thing.pins.update({f"{helper.name}.{port}": node for port, node in helper.pins.items()})
                 placed.add(id(helper))
     return placed
+
+
+def _has_room(thing: Thing, helper: Thing) -> bool:
+    """Whether the line of a piston gets to it above what it presses."""
+    alone = not any(one.pins for one in thing.helpers)
+    return alone and len(helper.pins) == 1 and thing.source.role is not Role.PROCESS
+
+
+def _sumps(component: Component) -> frozenset[str]:
+    """Ports for oil at the pressure around."""
+    ports = (item.name for item, spec in specs(type(component), "signal") if spec.draws)
+    values = ((name, getattr(component, name, None)) for name in ports)
+    return frozenset(name for name, value in values if isinstance(value, Real) and value == 0)
 
 
 def _drives(helper: Thing, thing: Thing) -> bool:

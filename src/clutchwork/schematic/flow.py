@@ -59,6 +59,8 @@ def flow(nodes: list[Thing], elements: list[Thing]) -> Flow:
         node = element.nodes[0]
         first = element.what == "heat" or drives(element.source) is True
         first |= drives(element.source) is False and id(node) in driving and element.source.role is not Role.CONTACT
+        # oil that comes out of the sump
+        first |= node.what == "oil" and not {"outlet", "clutch"}.isdisjoint(element.pins)
         made.sides[id(element)] = dict.fromkeys(element.pins, RIGHT if first else LEFT)
     return made
 

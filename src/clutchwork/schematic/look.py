@@ -27,6 +27,7 @@ HEAT = MarkStyle(colour="#B3261E", width=1.0, dash="dash")
 WARM = MarkStyle(colour="#B3261E", width=1.0)
 SIGNAL = MarkStyle(colour="#6A3D9A", width=0.9, dash="dot")
 SIGNAL_BODY = MarkStyle(colour="#6A3D9A", width=0.9)
+OIL = MarkStyle(colour="#6A3D9A", width=1.4)
 WRONG = MarkStyle(colour="#C2185B", width=1.0, dash="dash")
 
 LOCKED, SLIPPING, OPEN = "locked", "slipping", "open"

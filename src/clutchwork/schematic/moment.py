@@ -95,9 +95,9 @@ class RunSnapshot(Snapshot):
         return ""
 
     def node_lines(self, thing: Thing) -> list[str]:
-        """Speed of a shaft, temperature of a thermal node."""
+        """Speed of a shaft, temperature of a thermal node, pressure of oil."""
         name = str(getattr(thing.source, "name", ""))
-        for signal in ("speed", "temperature"):
+        for signal in ("speed", "temperature", "pressure"):
             value = self._value(f"{name}.{signal}")
             if value is not None:
                 return [self._shown(f"{name}.{signal}", value)]

@@ -47,6 +47,8 @@ def node_values(thing: Thing) -> list[str]:
         return ["missing"]
     if thing.what == "ambient":
         return [_given(node.temperature, "K")]
+    if thing.what == "oil":
+        return element_values(thing)
     if thing.what == "thermal":
         return [_given(getattr(node, "capacity", None), "J/K")] if hasattr(node, "capacity") else element_values(thing)
     inertia = node.inertia
@@ -75,7 +77,7 @@ def element_values(thing: Thing) -> list[str]:
 
 
 def _or_none(item: Any, element: Any) -> Any:
-    """A value, unless it is the default, which nobody needs to read."""
+    """A value, unless it is the default."""
     value = getattr(element, item.name, None)
     return None if item.default is not MISSING and value == item.default else value
 
@@ -113,16 +115,18 @@ def _is_share(force: Any) -> bool:
 def _driven(thing: Thing, translates: bool) -> list[str]:
     """The input of an element: a number, or what gives it."""
     helpers = [helper.source for helper in thing.helpers]
+    declared = {item.name: (item, one) for item, one in specs(type(thing.source))}
     for names, spec in inputs(type(thing.source)):
         for name in names:
-            value = getattr(thing.source, name, None)
+            item, shown = declared[name]
+            value = _or_none(item, thing.source)
             held = value[0] if isinstance(value, tuple) and value else value
-            if value is None or any(held is helper for helper in helpers):
+            drawn = name in thing.pins or name in thing.fixed or any(held is helper for helper in helpers)
+            if value is None or drawn:
                 continue
-            shown = {item.name: one for item, one in specs(type(thing.source))}[name]
             unit = _unit(thing.source, shown, translates)
             text = _given(value, unit, "force" if translates and name == "torque" else name)
-            if unit == "1" and isinstance(value, Real):
+            if (unit == "1" or shown.draws) and isinstance(value, Real):
                 text = f"{name.replace('_', ' ')} {text}"
             if text and (spec.otherwise is None or value != spec.otherwise):
                 return [text]

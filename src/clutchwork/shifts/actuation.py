@@ -71,7 +71,7 @@ class Actuation:
         return self.box.closed_in(gear) if gear in self.box.gears else ()
 
     def only(self, gear: str, with_: ShiftSettings) -> None:
-        """The elements of a gear closed at once, all others open, but for synchronisers, whose gears may wait.
+        """The elements of a gear closed at once, all others open, except synchronisers, whose gears may be preselected.
 
         In neutral the dog clutches of first gear are in, for they cannot mesh while the input turns.
         """
@@ -126,6 +126,10 @@ class Actuation:
         """For which elements are filled [s]: until the slowest of them touches, and its lag is over."""
         drivers = [self.drivers[name] for name in names if name in self.drivers]
         return max([with_.fill_time, *(SETTLE * one.of.lag + one.fill_time * (1.0 - one.level) for one in drivers)])
+
+    def settling(self, names: Iterable[str]) -> float:
+        """For which commands of elements are ahead of their torques [s]."""
+        return max([0.0, *(SETTLE * self.drivers[name].of.lag for name in names if name in self.drivers)])
 
     def start(self) -> None:
         """As a run begins: what is closed is filled and has its torque."""

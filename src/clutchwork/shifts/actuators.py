@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, NamedTuple
+from functools import cached_property
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
@@ -21,7 +22,7 @@ class Learnt(NamedTuple):
 
 @dataclass(frozen=True)
 class ElementActuator:
-    """How a shift element is commanded, and what its torque makes of it; `cw.shifts.fill_test` measures it.
+    """How a shift element is commanded, and how its torque responds; `cw.shifts.fill_test` measures it.
 
     Parameters:
         signal: of the command, such as "A_valve.current"
@@ -47,6 +48,11 @@ class ElementActuator:
 
     def command(self, torque: float) -> float:
         """At which the element carries a torque in the long run; that of the kiss point for none."""
+        return float(np.interp(torque, *self._table))
+
+    @cached_property
+    def _table(self) -> tuple[Any, Any]:
+        """Torques and commands from where it touches on."""
         carrying = [n for n, value in enumerate(self.torques) if value > 0.0]
-        torques = [0.0, *(self.torques[n] for n in carrying)]
-        return float(np.interp(torque, torques, [self.kiss, *(self.commands[n] for n in carrying)]))
+        torques, commands = ([values[n] for n in carrying] for values in (self.torques, self.commands))
+        return np.array([0.0, *torques]), np.array([self.kiss, *commands])

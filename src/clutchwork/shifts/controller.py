@@ -6,9 +6,10 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, ClassVar
 
-from clutchwork.base.errors import UseError
+from clutchwork.base.errors import UseError, expect
 from clutchwork.base.frozen import Frozen
 from clutchwork.base.quote import listed, quote
+from clutchwork.gearbox.gearbox import Gearbox
 from clutchwork.shifts.actuation import Actuation
 from clutchwork.shifts.actuators import Learnt
 from clutchwork.shifts.adaptation import adapt
@@ -27,7 +28,6 @@ from clutchwork.shifts.record import NEUTRAL, Measured, ShiftRecord
 from clutchwork.shifts.settings import ShiftSettings
 
 if TYPE_CHECKING:
-    from clutchwork.gearbox.gearbox import Gearbox
     from clutchwork.shifts.shift_map import ShiftMap
 
 Course = ExchangeSequence | ParallelSequence | EngineLedSequence
@@ -94,6 +94,8 @@ class ShiftController:
     _ended: float = 0.0  # s, end of the last shift
 
     def __post_init__(self) -> None:
+        expect("ShiftController", "box", self.box, Gearbox, "give a cw.Gearbox, such as cw.Gearbox.load('zf-8hp70')")
+        expect("ShiftController", "plant", self.plant, Plant, "give cw.shifts.plant_of(driveline, box)")
         self._known(self.gear)
         self._choice = GearChoice(self.schedule, self.settings)
         self._halves, self._output, self._sourced = Halves.of(self.box), Trend(), False

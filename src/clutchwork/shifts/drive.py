@@ -3,22 +3,25 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
+from numbers import Real
 from typing import TYPE_CHECKING
 
 from clutchwork.base.classes import dataclass
-from clutchwork.base.errors import UseError
+from clutchwork.base.errors import UseError, expect
+from clutchwork.base.quote import quote
+from clutchwork.declare.calls import explained
 from clutchwork.shifts.controller import ShiftController
 from clutchwork.shifts.hybrid import HybridController
 from clutchwork.shifts.record import Measured
 from clutchwork.shifts.torque_sources import Source, TorqueShare
+from clutchwork.stepping.simulator import Simulator
 
 if TYPE_CHECKING:
     from clutchwork.run.trajectory import Trajectory
-    from clutchwork.stepping.simulator import Simulator
 
 Controller = ShiftController | HybridController
 # what else is set at a time [s]: values by signal
-Also = Callable[[float, "Simulator"], Mapping[str, float]]
+Also = Callable[[float, Simulator], Mapping[str, float]]
 
 
 @dataclass(frozen=True)
@@ -87,12 +90,13 @@ class _SensorReader:
         return Measured(first, second, total, throttle, slips, sleeves, **given)
 
 
+@explained("cw.shifts.drive", throttle="0.3", control="control", sim="sim", until="10.0")
 def drive(
     sim: Simulator,
     control: Controller,
     until: float,
     *,
-    throttle: Callable[[float], float] | str,
+    throttle: Callable[[float], float] | str | float,
     sensed: Sensed | None = None,
     also: Also | None = None,
     sources: Sequence[Source] = (),
@@ -104,11 +108,18 @@ def drive(
     Use it for shifts on a schedule or by request: `control.records` has them afterwards. It can be called again to go
     on. UseError where nothing says the torque at the input, or a dual-clutch gearbox has no `sources`.
 
-    Parameters: throttle, of the driver over time, 0 to 1, below 0 where machines brake, or a signal such as
-    "driver.throttle"; sensed, signals that are read; also, what else is set, such as brakes; sources, motors and engine
-    that give what a shift asks for, the first one first; period, from one call of the controller to the next while it
-    shifts [s]; resting, the same between shifts.
+    Parameters: throttle, of the driver, 0 to 1, below 0 where machines brake, a number, a function of time or a signal
+    such as "driver.throttle"; sensed, signals that are read; also, what else is set, such as brakes; sources, motors
+    and engine that give what a shift asks for, the first one first; period, from one call of the controller to the next
+    while it shifts [s]; resting, the same between shifts.
     """
+    expect("cw.shifts.drive", "sim", sim, Simulator, "give a cw.Simulator of the driveline")
+    expect("cw.shifts.drive", "control", control, Controller, "give a ShiftController or a HybridController")
+    expect("cw.shifts.drive", "until", until, Real, "give a time in s")
+    expect("cw.shifts.drive", "sensed", sensed or Sensed(), Sensed, "give cw.shifts.Sensed(torque=...)")
+    if not isinstance(throttle, Real | str) and not callable(throttle):
+        remedy = "give a number from 0 to 1, a function of time, or a signal"
+        raise UseError("cw.shifts.drive", [f"throttle is {quote(throttle)}: {remedy}"])
     share, sensed = TorqueShare(sources), sensed or Sensed()
     asks = control.asks or ("" if control.always or sensed.torque else "nothing says the torque at the input")
     if control.always and sources:
@@ -118,7 +129,9 @@ def drive(
     read, set_, last = _SensorReader(sensed, sim, control, share), dict[str, float](), sim.time
     while sim.time < until - 1e-9:
         time = sim.time
-        pedal = float(sim[throttle]) if isinstance(throttle, str) else float(throttle(time))
+        pedal = float(
+            sim[throttle] if isinstance(throttle, str) else throttle(time) if callable(throttle) else throttle
+        )
         wanted = {} if set_ else control.commands
         now = read(pedal)
         wanted |= control.step(time, now)

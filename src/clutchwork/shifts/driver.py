@@ -15,18 +15,17 @@ DRAIN = 3.0
 TOUCH = 0.005
 # what may be left of a filling
 FULL = 1e-6
-# a shorter lag than this share of a period is none
-NO_LAG = 0.1
 
 
 @dataclass
 class ActuatorDriver:
-    """Fills a piston fast, holds it where it touches, and leads the lag of its torque."""
+    """Fills a piston fast, holds it where it touches, and follows the torque that is there."""
 
     of: ElementActuator
     fill_time: float  # s, as it was learnt
     kiss: float  # command at which it touches, as it was learnt
     level: float = 0.0  # of the filling, 0 to 1
+    grips: bool = True  # whether it carried something since it was filled, so that nothing is left of the filling
     torque: float = 0.0  # N m, as it should be at present
     _fills: float = 0.0  # rate of the filling that was commanded, over that of the full command
     _asked: float = 0.0  # N m, the torque that was
@@ -40,12 +39,14 @@ class ActuatorDriver:
         self._pass(passed)
         self._fills, self._asked = 0.0, 0.0
         if open_:
-            self._fills = -1.0 / DRAIN
+            self._fills, self.grips = -1.0 / DRAIN, False
             return of.commands[0]
         if self.level < 1.0 - FULL:
             return self._fill(period)
-        self._asked = self._lead(torque, period)
-        return self.at(max(TOUCH * of.most, self._asked))
+        self._asked = min(of.most, torque)
+        least = TOUCH * of.most
+        self.grips |= self.torque > 2.0 * least
+        return self.at(self._asked if self.grips else max(least, self._asked))
 
     def at(self, torque: float) -> float:
         """Command at which it carries a torque [N m] in the long run: that of the table, moved with the kiss point."""
@@ -64,11 +65,3 @@ class ActuatorDriver:
         of, hold = self.of, self.at(TOUCH * self.of.most)
         self._fills = min(1.0, (1.0 - self.level) * self.fill_time / period) if period else 1.0
         return hold + self._fills * (of.commands[-1] - hold)
-
-    def _lead(self, wanted: float, period: float) -> float:
-        """Torque to ask for, so that the lagging one comes to what is wanted: equation (17)."""
-        lag = self.of.lag
-        if lag <= NO_LAG * period:
-            return wanted
-        asked = self.torque + (wanted - self.torque) / (1.0 - exp(-max(period, 0.5 * lag) / lag))
-        return min(self.of.most, max(0.0, asked))

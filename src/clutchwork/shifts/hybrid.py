@@ -24,6 +24,8 @@ if TYPE_CHECKING:
     from clutchwork.shifts.plant import Plant
     from clutchwork.shifts.torque_sources import EngineSource, TorqueSource
 
+# directions of the driver; share of its idle speed from which on an engine fires, and how far ahead it is led [rad/s]
+FORWARD, REVERSE, FIRES, SOFTLY = "D", "R", 0.8, 50.0
 # rate at which an element is brought to equal speeds [1/s], within a tenth of that of the calls
 SYNCHRONISE = 10.0
 # output speed below which no ratio is looked at, and machines brake less [rad/s]
@@ -38,14 +40,16 @@ class HybridSettings:
 
     Parameters: output_torque, of the output at full pedal over its speed, points (rad/s, N m); engine_speed, of the
     engine over its power, points (W, rad/s); charge, of the battery that is aimed at; charge_power [W], for all that it
-    lacks; limits, of the power that the battery takes and gives at a charge [W], such as `battery.limits`; follow
-    [1/s], at which the engine comes to its speed; shift, settings of the elements.
+    lacks; electric [W], power below which the engine stands, 0: it never does; limits, of the power that the battery
+    takes and gives at a charge [W], such as `battery.limits`; follow [1/s], at which the engine comes to its speed;
+    shift, settings of the elements.
     """
 
     output_torque: Line
     engine_speed: Line
     charge: float = 0.6
     charge_power: float = 5e4
+    electric: float = 0.0
     limits: Callable[[float], tuple[float, float]] = field(default=lambda _: (-inf, inf))
     follow: float = 4.0
     shift: ShiftSettings = field(default_factory=ShiftSettings)
@@ -57,7 +61,7 @@ class HybridController:
     Use it for power splits with two machines, of one mode or several. In a split the torques of both machines follow
     from that of the output and the one that brings the engine to its speed. Where another mode fits better, the
     machines synchronise its element, which closes without slip; they take over what the other one carries, and that
-    opens.
+    opens. `request("R")` drives backward by the machines, `request("D")` forward again.
 
     Parameters:
         box: the gearbox, with the rows of its modes
@@ -99,11 +103,18 @@ class HybridController:
         self.records: list[ShiftRecord] = []
         self.always, self.torque_factor, self.blip = True, 1.0, 0.0
         self.phase, self.target = "drive", ""
+        self.direction, self.stands = FORWARD, False
         self._since = self._called = 0.0
         self._output = Trend()
         self._do = Actuation(box, plant, prefix, {}, settings.shift.cone)
         self._do.only(self.mode, settings.shift)
         self._do.start()
+
+    def request(self, direction: str) -> None:
+        """Forward, "D", or backward, "R": where the pedal drives to from now on."""
+        if direction not in (FORWARD, REVERSE):
+            raise UseError(CALL, [f"{quote(direction)} is not a direction: request {FORWARD!r} or {REVERSE!r}"])
+        self.direction = direction
 
     @property
     def shifting(self) -> bool:
@@ -133,14 +144,20 @@ class HybridController:
         period, self._called = max(0.0, time - self._called), time
         self._output.follow(now.output_speed, period)
         with_, speeds = self.settings, (now.input_speed, now.output_speed)
+        sense = -1.0 if self.direction == REVERSE else 1.0
         wanted = now.throttle * at(with_.output_torque, abs(speeds[1]))
         if wanted < 0.0:
             # machines brake to rest, and not beyond
-            wanted *= min(1.0, max(0.0, speeds[1] / SLOW))
+            wanted *= min(1.0, max(0.0, sense * speeds[1] / SLOW))
+        wanted *= sense
         low, high = with_.limits(charge)
         given = min(max((charge - with_.charge) * with_.charge_power, low), high)
         power = max(0.0, wanted * speeds[1] - given)
-        target = at(with_.engine_speed, power)
+        self.stands = power < (1.0 + HYSTERESIS * self.stands) * with_.electric
+        target = 0.0 if self.stands else at(with_.engine_speed, power)
+        if with_.electric:
+            # it is turned softly
+            target = min(target, speeds[0] + SOFTLY)
         if self.phase == "drive":
             self._choose(time, target, now)
         if self.phase == "synchronise":
@@ -148,7 +165,9 @@ class HybridController:
         low, high = self.engine.limits(speeds[0])
         torque = min(max(power / max(speeds[0], 1.0), min(0.0, high)), high)
         # what the engine does not give it drags
-        torque = max(torque, low)
+        fires = not with_.electric or (not self.stands and speeds[0] > FIRES * at(with_.engine_speed, 0.0))
+        # at rest its drag is friction, which holds it
+        torque = max(torque, low) if fires else low * min(1.0, max(0.0, speeds[0] / SLOW))
         machines = self._torques(time, target, (torque, wanted), speeds, charge)
         self._shift(time, now)
         made = self._do.outputs(period) | {self.engine.signal: self.engine.command(torque, speeds[0])}
@@ -182,7 +201,8 @@ class HybridController:
 
     def _choose(self, time: float, target: float, now: Measured) -> None:
         """Another mode, where the ratio that the engine should have is beyond the gear between both."""
-        if abs(now.output_speed) < SLOW:
+        if now.output_speed < SLOW or not target:
+            # backward, and without the engine, its mode stays
             return
         place, ratio = self.modes.index(self.mode), target / now.output_speed
         for other in self.modes[place + 1 : place + 2] + self.modes[max(0, place - 1) : place]:

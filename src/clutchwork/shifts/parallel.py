@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
-from math import copysign
+from math import copysign, exp
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -31,14 +31,18 @@ ASTRAY = 20.0
 LAST = 3.0
 # second difference of the speed of the output from which on it is a jolt of a piston [rad/s]
 JOLT = 0.25
+# the same in the torque phase, where an element grips late [rad/s], and when it should grip at the latest [s]
+GRIPS, SOON = 0.06, 0.02
 # for which the torque phase may wait without a reason [s]
-USUAL = 0.015
+USUAL = 0.005
 # share of the inertia phase in which the torque of the engine comes back
 COMES_BACK = 0.4
 # torque that is lacking at the input of a downshift [N m], from which on all of `blip` is asked for
 WHOLE = 50.0
 # torque of an element that counts as none, as a share of that of the input
 NOTHING = 1e-3
+# time constant of the torque of the input in the loop [s]
+SMOOTH = 0.02
 # part of the inertia phase in which the loop has settled and the slip is not over yet
 SETTLED = (0.4, 0.95)
 # part of it behind which what opens behind a piston is let go, where it carries nothing
@@ -87,9 +91,11 @@ class ParallelSequence:
     takes: tuple[str, ...] = ()  # those that took the torque over
     missed: dict[str, Missed] = field(default_factory=dict)  # of those that carried in the inertia phase
     _outputs: tuple[float, ...] = ()  # rad/s
+    _kinks: list[tuple[float, float]] = field(default_factory=list)  # s, rad/s: of the output in the torque phase
     _held: dict[str, float] = field(default_factory=dict)  # Pa, of what opens, at the beginning
     _start: Array = field(default_factory=lambda: np.zeros(0))  # y where the inertia phase begins [rad/s]
     _speed: Array = field(default_factory=lambda: np.zeros(0))  # the same of its rate [rad/s2]
+    _torque: float = 0.0  # N m, of the input behind a filter, in the inertia phase
     _fill_time: float = 0.0  # s
     _time: float = 0.0  # s, of the inertia phase as planned
     _passed: float = 0.0  # s, of that plan
@@ -102,7 +108,7 @@ class ParallelSequence:
         self._held = {name: self.do.commands.get(name, 0.0) for name in self.one.elements}
 
     def torque_change(self, _: Measured) -> float:
-        """What is asked for at the input on top of the driver's torque [N m]."""
+        """Torque requested at the input on top of the driver's [N m]."""
         return (self.torque_factor - 1.0) * self.loaded + self.lacking
 
     def step(self, time: float, period: float, now: Measured) -> str:
@@ -131,12 +137,14 @@ class ParallelSequence:
             # nothing holds the input meanwhile
             return "inertia"
         share = 1.0 if self.filled else share_of(passed, self._fill_time)
+        # what lags is down in time
+        down = max(share, share_of(passed, self._fill_time - do.settling(one.off)))
         self._watch_fill(now)
         for name in one.on:
             do.carry(name, 0.0, with_)
         for name in one.off:
             held = do.pressure(name, with_.margin * abs(one.off_torques[name] * now.input_torque), with_)
-            do.commands[name] = min(self._held[name], held + (1.0 - share) * (self._held[name] - held))
+            do.commands[name] = min(self._held[name], held + (1.0 - down) * (self._held[name] - held))
         if share < 1.0:
             return ""
         taken = self._still(now)
@@ -157,6 +165,7 @@ class ParallelSequence:
                 do.carry(name, with_.margin**2 * abs(one.off_torques[name] * now.input_torque), with_)
             if passed < with_.longest:
                 return ""
+        self._kinks += [(passed, self._kink(now))]
         share, taken = share_of(passed - self.late, with_.torque_time), self._still(now)
         for name in one.on:
             do.carry(name, share * taken[name], with_)
@@ -166,14 +175,18 @@ class ParallelSequence:
             do.carry(name, abs(before + after), with_)
         if share < 1.0 and all(abs(now.slips[name]) <= with_.sync_slip for name in one.off):
             return ""
+        size = max(kink for _, kink in self._kinks)
+        if size > GRIPS:
+            # the output shows where they grip
+            grips = next(at for at, kink in self._kinks if kink > 0.5 * size)
+            self.late = max(self.late, grips - SOON)
         return "inertia"
 
     def _runs_away(self, now: Measured) -> bool:
-        """Whether an element that opens slips away from the new gear: too little holds the input."""
-        slips = ((now.slips[name], self.one.offsets[name] * now.output_speed) for name in self.one.off)
-        return len(self.one.off) == 1 and any(
-            slip * ahead < 0.0 and abs(slip) > self.with_.sync_slip for slip, ahead in slips
-        )
+        """Whether an element that held the gear before slips away from the new one: too little holds the input."""
+        held = [name for name in self.one.off if self.one.off_torques[name]]
+        slips = ((now.slips[name], self.one.offsets[name] * now.output_speed) for name in held)
+        return any(slip * ahead < 0.0 and abs(slip) > self.with_.sync_slip for slip, ahead in slips)
 
     def inertia(self, passed: float, period: float, now: Measured) -> str:
         """All slips along their profiles at once, by those elements that pull the right way: equations (15), (16)."""
@@ -271,12 +284,15 @@ class ParallelSequence:
 
     def _watch_fill(self, now: Measured) -> None:
         """A piston that is filled too long grips with a jolt, which the output shows."""
+        jolt = self._kink(now)
+        if jolt > self.jolt:
+            self.jolt, self.instants["jolt"] = jolt, self._now
+
+    def _kink(self, now: Measured) -> float:
+        """Second difference of the speed of the output [rad/s]."""
         self._outputs = (*self._outputs[-2:], now.output_speed)
-        if len(self._outputs) > 2:
-            first, middle, last = self._outputs
-            jolt = abs(last - 2.0 * middle + first)
-            if jolt > self.jolt:
-                self.jolt, self.instants["jolt"] = jolt, self._now
+        first, middle, last = self._outputs if len(self._outputs) > 2 else (0.0, 0.0, 0.0)
+        return abs(last - 2.0 * middle + first)
 
     def _lets_go(self, name: str, torque: float) -> bool:
         """Whether an element that opens is no more wanted: one whose kiss point is taken too high would drag."""
@@ -328,7 +344,7 @@ class ParallelSequence:
     def _begin(self, now: Measured) -> None:
         """The inertia phase from here."""
         one, with_ = self.one, self.with_
-        self._start, self.loaded = self._y(now), now.input_torque
+        self._start, self.loaded, self._torque = self._y(now), now.input_torque, now.input_torque
         self._speed = np.array([self.rates.get(name, 0.0) for name in one.on])
         self._integral, self._passed = np.zeros(len(one.on)), 0.0
         # of several that open one may be wanted later
@@ -338,10 +354,12 @@ class ParallelSequence:
         change = -float(one.input @ self._start)
         time, longer = max(with_.inertia_time, 1e-9), abs(change) / max(with_.usual_step, 1e-9)
         # what the torque of the input itself brings there, or a pull of the elements that close up to a limit
-        at_hand = AT_HAND * max(0.0, copysign(now.input_torque, change * now.input_torque))
-        at_hand = max(at_hand, with_.pull if change > 0.0 else 0.0)
+        own, pull = AT_HAND * max(0.0, copysign(now.input_torque, change * now.input_torque)), with_.pull
+        at_hand = max(own, pull if change > 0.0 else 0.0)
         if at_hand > 0.0 and change:
             kinetic = float(self._start @ one.inertia @ self._start) / abs(change)
+            # its own torque speeds up an engine behind a converter too
+            kinetic += min(1.0, own / pull) * self.do.plant.behind * abs(change)
             longer = max(longer, 1.5 * kinetic / at_hand / time)
         self._time = time * min(max(1.0, longer), max(1.0, with_.stretch))
 
@@ -367,7 +385,9 @@ class ParallelSequence:
         # under power the torque at hand makes up what the slips are off their course
         asked = rate if self.loaded > 0.0 else law
         self._ask(float(self._start @ (one.inertia @ asked)), now)
-        force = one.inertia @ law + one.coupling * self._output.slope - one.input * now.input_torque
+        # that of a converter answers within a period to what is done here: at once it would come back as an oscillation
+        self._torque += (1.0 - exp(-period / SMOOTH)) * (now.input_torque - self._torque)
+        force = one.inertia @ law + one.coupling * self._output.slope - one.input * self._torque
         torques, missed = self._taken(force, now)
         if with_.closed_loop and missed <= 1e-6:
             self._integral = self._integral + with_.integral * error * period

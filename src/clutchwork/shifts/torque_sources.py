@@ -7,12 +7,12 @@ from math import exp, inf
 from typing import TYPE_CHECKING, Protocol
 
 from clutchwork.base.classes import dataclass
-from clutchwork.base.errors import UseError
+from clutchwork.base.errors import UseError, expect
 from clutchwork.base.quote import quote
+from clutchwork.elements.engine import Engine
 from clutchwork.shifts.lines import Line, at
 
 if TYPE_CHECKING:
-    from clutchwork.elements.engine import Engine
     from clutchwork.shifts.record import Measured
 
 
@@ -91,6 +91,8 @@ class EngineSource:
     @classmethod
     def of(cls, engine: Engine) -> EngineSource:
         """That of an engine of the driveline; UseError for one with a torque map."""
+        remedy = "give the cw.Engine of the driveline, or cw.shifts.EngineSource(signal, full_load)"
+        expect("cw.shifts.EngineSource.of", "engine", engine, Engine, remedy)
         if engine.full_load is None:
             raise UseError("EngineSource.of", [f"{quote(engine.name)} has a torque map: give full_load and motoring"])
         return cls(f"{engine.name}.throttle", engine.full_load, engine.motoring or ((0.0, 0.0),), engine.lag)
@@ -149,7 +151,7 @@ class TorqueShare:
     ) -> tuple[dict[str, float], float]:
         """Values by signal, and the throttle that is left for an engine beside the sources, 0 to 1.
 
-        What is asked for is a change of the torque at the input, below zero a reduction: `control.torque_change`.
+        The request is a change of the torque at the input, negative for a reduction: `control.torque_change`.
         Parameters: passed, time since the last call, period, to the next one [s].
         """
         wanted, made, speed = control.torque_change(now), dict[str, float](), now.input_speed

@@ -19,7 +19,7 @@ from clutchwork.declare.layout import DONE, INTERRUPTED
 from clutchwork.results.channels import Channels, channels
 from clutchwork.results.forms import LOCKED, all_reads, is_of_structure
 from clutchwork.sweeps.axes import Plan, systems_of
-from clutchwork.sweeps.outputs import AtEnd, AtTimes, Computed, Extreme, Integral, Output, SquaredJerk, When
+from clutchwork.sweeps.outputs import AtEnd, AtTimes, Computed, Extreme, FeltJerk, Integral, Output, SquaredJerk, When
 from clutchwork.sweeps.parts import PARTS, squared_jerk, steps_of
 
 if TYPE_CHECKING:
@@ -106,13 +106,18 @@ class CoreOutputs:
         """Instants of the grid: those asked for, the start of integrals, the end."""
         asked = {time for one in self.outputs.values() if isinstance(one, AtTimes) for time in one.times}
         start = {self.begin} if self.signals(Integral) else set()
+        felt = {time for one in self.outputs.values() if isinstance(one, FeltJerk) for time in self.felt(one).tolist()}
         # one at an event is shown once, from the left, as a run that is asked for it
-        return np.array(sorted(asked | start | {self.t_end}))
+        return np.array(sorted(asked | start | felt | {self.t_end}))
+
+    def felt(self, one: FeltJerk) -> Array:
+        """Instants at which a jerk needs the speed."""
+        return one.times(self.begin, self.t_end)
 
     @cached_property
     def all_signals(self) -> tuple[str, ...]:
         """Signals that any output is made of."""
-        return tuple(dict.fromkeys(self.signals(AtEnd, AtTimes, Integral, *IN_STEPS)))
+        return tuple(dict.fromkeys(self.signals(AtEnd, AtTimes, FeltJerk, Integral, *IN_STEPS)))
 
     @property
     def in_steps(self) -> bool:
@@ -122,9 +127,9 @@ class CoreOutputs:
     @property
     def needs_grid(self) -> bool:
         """Whether rows at instants are needed that the steps do not give."""
-        return bool(self.signals(AtTimes)) or not self.in_steps
+        return bool(self.signals(AtTimes, FeltJerk)) or not self.in_steps
 
-    def kept_as(self, one: AtEnd | AtTimes | Integral) -> str:
+    def kept_as(self, one: AtEnd | AtTimes | FeltJerk | Integral) -> str:
         """The signal that an output is read from."""
         return one.kept_as(self.channels) if isinstance(one, Integral) else one.signal
 
@@ -331,7 +336,7 @@ def _from_grid(block: Block, call: Call, forms: Forms, found: Native) -> None:
     variant = np.repeat(call.who, rows.shape[1])
     reached = (found.status == DONE)[:, None] | ~np.isnan(rows).all(axis=2) if rows.shape[2] else None
     for name, one in wanted.outputs.items():
-        if isinstance(one, AtTimes | AtEnd | Integral):
+        if isinstance(one, AtTimes | AtEnd | FeltJerk | Integral):
             signal = wanted.kept_as(one)
             whole = forms.values(signal, _finite(flat), variant).reshape(rows.shape[:2])
             _set_grid(block, call, name, one, wanted, whole, reached)
@@ -353,7 +358,10 @@ def _set_grid(
         return
     out = _place(block, name, values)
     ended = block.status[call.who] == DONE
-    chosen = values[:, -1] - values[:, 0] if isinstance(one, Integral) else values[:, -1]
+    if isinstance(one, FeltJerk):
+        chosen = one.largest(values[:, np.searchsorted(wanted.grid, wanted.felt(one))])
+    else:
+        chosen = values[:, -1] - values[:, 0] if isinstance(one, Integral) else values[:, -1]
     out[call.who[ended]] = chosen[ended]
 
 

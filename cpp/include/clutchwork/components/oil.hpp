@@ -4,7 +4,8 @@
 /// Flow of oil through openings: docs/theory/hydraulics.md.
 namespace clutchwork {
 
-inline constexpr double bar = 1e5;  ///< [Pa] one unit of a pressure among the states of hydraulic elements
+inline constexpr double bar = 1e5;          ///< [Pa] one unit of a pressure among the states of hydraulic elements
+inline constexpr double ambient = 101325;  ///< [Pa] what pressures are above
 
 /// Oil as it flows: [kg/m3], [m2/s].
 template <class S>
@@ -37,6 +38,15 @@ S uncovered(const S& way, const T& clearance) {
 template <class T>
 T pump_per_radian(const T& displacement) {
   return displacement / T(6.28318530717958647692);
+}
+
+/// Share of its chambers that a pump fills: all, unless the pressure at its inlet is near vacuum.
+/// docs/theory/hydraulics.md (13)
+template <class S>
+S pump_filling(const S& inlet) {
+  const S x = (inlet + S(ambient)) / S(2e4);
+  if (value(x) >= 1) return S(1);
+  return value(x) > 0 ? x * x * (S(3) - S(2) * x) : S(0);
 }
 
 /// Friction of a pump that grows with its load, against its motion; it fades out where that is slow.

@@ -51,7 +51,6 @@ struct Accumulator : declared::Accumulator {
     return who;
   }
 
-  static constexpr double ambient = 101325;  ///< [Pa]
   static constexpr double air = 0.005;       ///< share of the oil
 };
 

@@ -34,7 +34,9 @@ struct Battery : declared::Battery {
     rates[energy] = u * i;
     rates[loss] = r * i * i;
     // exactly nothing, no round-off of a difference
-    rates[unserved] = serves ? S(0) : asked - (u - r * i) * i;
+    const S left = serves ? S(0) : asked - (u - r * i) * i;
+    rates[unserved] = larger(left, S(0));
+    rates[refused] = larger(-left, S(0));
   }
 
   template <class T, class S>

@@ -21,8 +21,6 @@ struct OilVolume : declared::OilVolume {
     rates[pressure] = flow / (p.volume * softness * T(bar));
     rates[energy] = now * flow;
   }
-
-  static constexpr double ambient = 101325;  ///< [Pa]
 };
 
 }  // namespace clutchwork::elements

@@ -24,8 +24,12 @@ struct PumpFlow : declared::PumpFlow {
     return p.leakage * drop(p, at) / (at.input[Input::density] * at.input[Input::viscosity]);
   }
   template <class T, class S>
+  static S per_radian(const Params<T>& p, const At<S>& at) {
+    return pump_per_radian(p.displacement) * pump_filling(at.input[Input::inlet]);
+  }
+  template <class T, class S>
   static S flow(const Params<T>& p, const At<S>& at) {
-    return pump_per_radian(p.displacement) * at.input[Input::speed] - lost_flow(p, at);
+    return per_radian(p, at) * at.input[Input::speed] - lost_flow(p, at);
   }
   template <class T, class S>
   static void drawn(const Params<T>& p, const At<S>& at, S* flows) {
@@ -35,7 +39,7 @@ struct PumpFlow : declared::PumpFlow {
   template <class T, class S>
   static void state_rates(const Params<T>& p, const At<S>& at, S* rates) {
     const S u = drop(p, at), w = at.input[Input::speed];
-    const S friction = pump_friction(p.efficiency, p.slow, pump_per_radian(p.displacement) * u, w) + p.drag * w;
+    const S friction = pump_friction(p.efficiency, p.slow, per_radian(p, at) * u, w) + p.drag * w;
     rates[energy] = flow(p, at) * u;
     rates[loss] = lost_flow(p, at) * u + friction * w;
   }

@@ -17,7 +17,7 @@ struct PumpTorque : declared::PumpTorque {
   template <class T, class S>
   static S torque(const Params<T>& p, const At<S>& at) {
     const S drop = at.input[Input::outlet] - at.input[Input::inlet];
-    const S ideal = pump_per_radian(p.displacement) * drop;
+    const S ideal = pump_per_radian(p.displacement) * pump_filling(at.input[Input::inlet]) * drop;
     return -ideal - pump_friction(p.efficiency, p.slow, ideal, at.rate) - p.drag * at.rate;
   }
   template <class T, class S>

@@ -287,6 +287,7 @@ class Phase : public StepSize<typename Form::Scalar> {
     if (knot_lets_go(taken_form().ws)) return decide(Cause::input);
     if constexpr (has_tangents<T>) {
       if (leave_event(form_, step_)) balance_massless(form_, step_), linearize_start();
+      note_borders(form_, step_, true);
     }
     show_behind(jumps);
   }
@@ -438,7 +439,7 @@ class Phase : public StepSize<typename Form::Scalar> {
   bool follow(double s)
     requires has_tangents<T>
   {
-    varied_.rest();
+    if (s <= 0) varied_.rest();
     for (double at = 0; at < s;) {
       const double to = varied_.follow(at, s, end_of_step());
       if (to < 0) return leave(Status::step_collapse), false;

@@ -96,7 +96,7 @@ def valve(pen: SymbolPen, _: Drawn) -> None:
     pen.line((4.0, -5.0), (4.0, 2.0), look=SIGNAL_BODY)
 
 
-def actuator(pen: SymbolPen, _: Drawn) -> None:
+def actuator(pen: SymbolPen, shown: Drawn) -> None:
     """A piston with its spring and an orifice before it."""
     pen.box(-11.0, -8.0, 11.0, 8.0, look=SLOT)
     pen.line((-9.0, 2.0), (-7.0, 0.0), (-9.0, -2.0), look=SIGNAL_BODY)
@@ -104,6 +104,7 @@ def actuator(pen: SymbolPen, _: Drawn) -> None:
     pen.box(-3.0, -5.0, 9.0, 5.0, look=SIGNAL_BODY)
     pen.box(-1.0, -5.0, 1.0, 5.0, look=SIGNAL_BODY)
     pen.line((1.0, 2.0), (2.5, 4.0), (4.0, 0.0), (5.5, 4.0), (7.0, 0.0), (9.0, 2.0), look=SIGNAL_BODY)
+    _joined(pen, shown, 11.0)
 
 
 VEHICLES = {
