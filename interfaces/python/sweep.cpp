@@ -113,11 +113,10 @@ nb::tuple sweep(std::vector<nb::bytes> systems, std::vector<std::tuple<Whole, Wo
   nb::list parts_found;
   for (Found& one : found) {
     const std::size_t n = one.variant.size(), rows = one.times.size(), kept = one.events.size() / event_kept;
-    parts_found.append(nb::make_tuple(owned(std::move(one.variant), {n}), owned(std::move(one.rows), {n}),
-                                      owned(std::move(one.times), {rows}),
-                                      owned(std::move(one.values), {rows, task.inside.size()}),
-                                      owned(std::move(one.events), {kept, event_kept}),
-                                      owned(std::move(one.ends), {n, std::size_t(2), std::size_t(task.width)})));
+    parts_found.append(nb::make_tuple(
+        owned(std::move(one.variant), {n}), owned(std::move(one.rows), {n}), owned(std::move(one.times), {rows}),
+        owned(std::move(one.values), {rows, task.inside.size()}), owned(std::move(one.events), {kept, event_kept}),
+        owned(std::move(one.ends), {n, std::size_t(2), std::size_t(task.width)})));
   }
   nb::object lines =
       parts > 0 ? nb::none() : owned(std::move(grid), {variants, std::size_t(task.instants), std::size_t(task.width)});

@@ -88,11 +88,7 @@ class Phase : public StepSize<typename Form::Scalar> {
   /// work are there for the case that nothing happens; true: nothing did.
   [[gnu::noinline]] bool settle_given(bool written) {
     step_.t = ws_.time, step_.h = reach_, step_.dense = false;
-    const Hit hit = find_hit(taken_form(), taken_step());
-    if (!written || !hit.none() || hit.rough) return settle_hit(hit), false;
-    const bool missed = misses_rest(hit);
-    missed ? reject_and_shrink() : accept();
-    return !missed;
+    return settle_step(written);
   }
   /// The step has become too short. The inputs are those of its last stage.
   [[gnu::noinline]] void collapse() {
@@ -344,9 +340,11 @@ class Phase : public StepSize<typename Form::Scalar> {
     return true;
   }
 
-  /// What happens inside a step, and where the run goes on from.
-  [[gnu::noinline]] void settle_step() { settle_hit(find_hit(taken_form(), taken_step())); }
-  CLUTCHWORK_INLINE void settle_hit(const Hit& hit) {
+  /// What happens inside a step, and where the run goes on from. `written`: rows and work are there for the case that
+  /// nothing happens; true: nothing did.
+  [[gnu::noinline]] bool settle_step(bool written = false) {
+    const Hit hit = find_hit(taken_form(), taken_step());
+    const bool is_written = written && hit.none();
     if (must_land(hit)) {
       land(hit.s);
     } else if (hit.rough) {
@@ -355,9 +353,11 @@ class Phase : public StepSize<typename Form::Scalar> {
       reject_and_shrink();
     } else if (Form::full && hit.none() && taken_form().ws.ratios.jammed >= 0) {
       jam(taken_form().ws.ratios.jammed);
-    } else if (reach(hit.s)) {
+    } else if (is_written || reach(hit.s)) {
       hit.none() ? accept() : meet(hit);
+      return is_written;
     }
+    return false;
   }
 
   void reject() {
