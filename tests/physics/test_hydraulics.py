@@ -392,3 +392,12 @@ def test_one_volume_at_two_ports_is_named() -> None:
     d.add(cw.Orifice("bore", inlet=line, outlet=line, area=1e-6))
     with pytest.raises(cw.ModelError, match="outlet is also the inlet; join it to another volume"):
         d.assemble()
+
+
+def test_parts_that_are_not_there_are_named() -> None:
+    d = cw.Driveline("parts")
+    shaft = d.shaft("shaft", inertia=1.0)
+    with pytest.raises(cw.UnknownName, match="body has no part 'B_piston'; did you mean 'A_piston'"):
+        cw.ValveBody("body", shaft=shaft, piston_areas={"A": 6e-3}).part("B_piston")
+    with pytest.raises(cw.UnknownName, match="body has values that make no parts"):
+        cw.ValveBody("body", shaft=shaft, piston_areas=[6e-3]).part("A_piston")  # type: ignore[arg-type]

@@ -131,3 +131,30 @@ def test_without_motors_nothing_changes() -> None:
     control.request("4")
     run = cw.shifts.drive(sim, control, 2.0, sensed=SENSED, throttle=lambda _: 0.4)
     assert np.min(run["combustion.throttle"]) == pytest.approx(0.4 * 0.7)
+
+
+def test_what_is_given_by_mistake_is_named() -> None:
+    """The box by its name, the engine by its name, a throttle that is none; a number and a Driveline are welcome."""
+    model = car(BOX, "3")
+    plant = cw.shifts.plant_of(model, BOX)
+    assert plant == cw.shifts.plant_of(model.assemble(), BOX)
+    # kg m2 of the engine behind its converter
+    engine = next(node for node in model.nodes if node.name == "engine")
+    assert plant.behind == pytest.approx(engine.inertia)
+    control = cw.shifts.ShiftController(BOX, plant, gear="3")
+    sim, sensed = cw.Simulator(model), SENSED
+    drive = cw.shifts.drive
+    assert drive(sim, control, 0.1, throttle=0.3, sensed=sensed)["combustion.throttle"][-1] == 0.3
+    wrong = {
+        "box is 'zf-8hp70': give a cw.Gearbox": lambda: cw.shifts.plant_of(model, "zf-8hp70"),
+        "plant is <Driveline": lambda: cw.shifts.ShiftController(BOX, model),
+        "engine is 'engine': give the cw.Engine": lambda: cw.shifts.EngineSource.of("engine"),
+        "throttle is \\[0.3\\]: give a number from 0 to 1": lambda: drive(
+            sim, control, 0.2, throttle=[0.3], sensed=sensed
+        ),
+        "throttle is missing": lambda: drive(sim, control, 0.2, sensed=sensed),
+        "sim is <Driveline": lambda: drive(model, control, 0.2, throttle=0.3),
+    }
+    for words, call in wrong.items():
+        with pytest.raises(cw.UseError, match=words):
+            call()
