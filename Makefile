@@ -163,7 +163,8 @@ docs: $(STAMPS)/package $(STAMPS)/docs $(WASM) $(PAGE)
 
 wasm: $(WASM)
 
-$(WASM): $(STAMPS)/wasm $(CORE_SOURCES) tools/build_wasm.py
+# made smaller where node is there
+$(WASM): $(STAMPS)/wasm $(if $(NODE),interfaces/page/node_modules/.package-lock.json) $(CORE_SOURCES) tools/build_wasm.py
 	@echo "compiling the core to WebAssembly (a minute or so)"
 	@JOBS=$(JOBS) $(BIN)/python tools/build_wasm.py
 

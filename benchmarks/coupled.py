@@ -6,7 +6,6 @@ import math
 from collections.abc import Iterator
 
 import numpy as np
-from scipy.integrate import solve_ivp
 
 import clutchwork as cw
 from benchmarks.core import Prepared
@@ -83,6 +82,9 @@ class Lean:
         self, t: float, stop: float, w: np.ndarray, modes: tuple[int, ...]
     ) -> tuple[float, np.ndarray, tuple[int, ...]]:
         """Until something changes."""
+        # others take the driveline alone, and wait for no import of SciPy
+        from scipy.integrate import solve_ivp
+
         middle = 0.5 * (t + stop)
         forces = [lambda t, i=i: self.force(i, t) if i == 0 else self.force(i, middle) for i in range(3)]
 

@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator
+from functools import partial
 from typing import Any
 
 import numpy as np
 
 import clutchwork as cw
+from benchmarks import coupled
 from benchmarks.report import Row
 from benchmarks.timing import cpu, ratio, rounds
 from support import six_speed
@@ -23,8 +25,14 @@ HUNDRED = [f"F1.pressure.values[{knot}]" for knot in range(1, 101)]
 LAW = [f"friction.{field}" for field in six_speed.LAW]
 MANY = [f"{name}.{number}" for name in six_speed.CLUTCHES for number in ("gain", *LAW)]
 MANY += ["shaft.stiffness", "shaft.damping"]
-# most plain runs
-TARGETS = {"one number": 2.0, "eight numbers": 4.0, "100 numbers": 15.0, "followed back, 17 numbers": 6.0}
+# model, numbers, most plain runs
+ASKED: dict[str, tuple[str, list[str], float | None]] = {
+    "one number": ("shift", ONE, 2.0),
+    "eight numbers": ("shift", EIGHT, 4.0),
+    "100 numbers": ("fine", HUNDRED, 15.0),
+    "followed back, 17 numbers": ("shift", MANY, 6.0),
+    "coupled clutches, one number": ("coupled", ["clutch1.gain"], None),
+}
 
 
 def system() -> cw.System:
@@ -41,20 +49,37 @@ def moving(f: Any, call: Callable[[Any, Any], object]) -> Callable[[], object]:
     return lambda: call(f, f.x0 * (1 + 1e-6 * rng.standard_normal(len(f.x0))))
 
 
+def calls() -> dict[str, Callable[[], object]]:
+    """Runs with derivatives by name, and the plain ones of their models by theirs."""
+    models = {"shift": six_speed.gearbox(six_speed.SHIFT).assemble(), "fine": system()}
+    models["coupled"] = coupled.driveline().assemble()
+    found = dict[str, Callable[[], object]]()
+    for name, model in models.items():
+        end = coupled.T_END if name == "coupled" else T_END
+        found[name] = partial(cw.simulate, model, end, times=[end], **TOLERANCES)
+        for asked, (of_model, by, _) in ASKED.items():
+            if of_model == name:
+                of = "J4.speed" if name == "coupled" else "w8.speed"
+                f = cw.differentiable(model, end, of=of, by=by, **TOLERANCES)
+                found[asked] = moving(f, lambda f, x: f.gradient(x))
+    return found
+
+
+def compared(how: str, taken: Callable[[str, str], float]) -> Iterator[Row]:
+    """A line for each of what is asked, with its target.
+
+    Parameters: how, what is compared; taken, the ratio of two calls by their names.
+    """
+    for name, (model, _, most) in ASKED.items():
+        found = taken(name, model)
+        target, met = ("", None) if most is None else (f"<= {most:g}", found <= most)
+        yield Row(f"gradient, {name}: {how} / run", f"{found:.1f}", target, met)
+
+
 def rows(quick: bool = False) -> Iterator[Row]:
     """The lines of the table."""
-    plain, fine = six_speed.gearbox(six_speed.SHIFT).assemble(), system()
-    asked = {"one number": (plain, ONE), "eight numbers": (plain, EIGHT), "100 numbers": (fine, HUNDRED)}
-    asked["followed back, 17 numbers"] = (plain, MANY)
-    of, calls = "w8.speed", dict[str, Callable[[], object]]()
-    for name, (model, by) in asked.items():
-        f = cw.differentiable(model, T_END, of=of, by=by, **TOLERANCES)
-        calls[name] = moving(f, lambda f, x: f.gradient(x))
-    for name, model in (("plain", plain), ("plain, fine", fine)):
-        calls[name] = lambda model=model: cw.simulate(model, T_END, times=[T_END], **TOLERANCES)  # type: ignore[misc]
-    for call in calls.values():
+    known = calls()
+    for call in known.values():
         call()
-    taken = rounds({name: lambda call=call: cpu(call, 10) for name, call in calls.items()}, 3 if quick else 9)  # type: ignore[misc]
-    for name, most in TARGETS.items():
-        found = ratio(taken[name], taken["plain, fine" if name == "100 numbers" else "plain"])
-        yield Row(f"gradient, {name}: values and derivatives / run", f"{found:.1f}", f"<= {most:g}", found <= most)
+    taken = rounds({name: partial(cpu, call, 10) for name, call in known.items()}, 3 if quick else 9)
+    yield from compared("values and derivatives", lambda name, plain: ratio(taken[name], taken[plain]))

@@ -17,7 +17,20 @@ ROOT = Path(__file__).resolve().parents[1]
 # builders of models are shared with the tests; run as a file, the package itself has to be found too
 sys.path[:0] = [str(ROOT), str(ROOT / "tests")]
 
-from benchmarks import chain, coupled, gradients, lanes, launch, laws, report, shift, startup, stepping, sweeps  # noqa: E402
+from benchmarks import (  # noqa: E402
+    chain,
+    coupled,
+    gradients,
+    instructions,
+    lanes,
+    launch,
+    laws,
+    report,
+    shift,
+    startup,
+    stepping,
+    sweeps,
+)
 
 PARTS = {
     "shift": shift.rows,
@@ -25,6 +38,7 @@ PARTS = {
     "sweeps": sweeps.rows,
     "lanes": lanes.rows,
     "gradients": gradients.rows,
+    "instructions": instructions.rows,
     "coupled": coupled.rows,
     "laws": laws.rows,
     "chain": chain.rows,

@@ -150,7 +150,7 @@ class Copy:
 
 
 def _listed() -> Iterator[str]:
-    """Files of the checkout, and those that builds put beside the sources but for the modules."""
+    """Files of the checkout, and those that builds put beside the sources, except the modules."""
     command = ["git", "ls-files", "--cached", "--others", "--exclude-standard"]
     done = subprocess.run(command, cwd=ROOT, check=True, stdout=subprocess.PIPE, text=True)  # noqa: S603 - our own files
     for name in done.stdout.splitlines():

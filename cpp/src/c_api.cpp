@@ -1,6 +1,7 @@
 #include <clutchwork/c_api.h>
 #include <clutchwork/run/placed.hpp>
 
+#include <algorithm>
 #include <new>
 #include "lanes.hpp"
 #include "local.hpp"
@@ -210,11 +211,28 @@ int cw_expect_inputs(cw_run* run, int expected) {
   return 1;
 }
 
-int cw_leave_out(cw_run* run, int angles, int work) {
-  if (run == nullptr) return 0;
+int cw_read(cw_run* run, const std::int64_t* numbers, std::int64_t n, const std::int64_t* inside,
+            std::int64_t n_inside) {
+  if (run == nullptr || n < 0 || n_inside < 0 || (n > 0 && numbers == nullptr) || (n_inside > 0 && inside == nullptr))
+    return 0;
+  Workspace<double>& ws = run->ws;
+  const RowLayout& row = ws.row;
+  for (std::int64_t i = 0; i < n + n_inside; ++i) {
+    const std::int64_t at = i < n ? numbers[i] : inside[i - n];
+    if (at < 0 || at >= row.size) return 0;
+  }
+  auto lacked = [&](auto&& is_part) {
+    if (std::any_of(inside, inside + n_inside, is_part)) return 0;
+    return std::any_of(numbers, numbers + n, is_part) ? 1 : 2;
+  };
+  ws.out.read = {numbers, n}, ws.out.inside = {inside, n_inside};
+  ws.out.lacks_angles = lacked([&](std::int64_t at) { return at >= row.angle && at < row.acceleration; });
+  const int work = lacked([&](std::int64_t at) {
+    return (at >= row.element_work && at < row.contact_mode) || (at >= row.prescribed_work && at < row.supply_power) ||
+           (at >= row.supply_energy && at < row.input);
+  });
   // the steps of such a motion follow its work
-  const int most = run->ws.sys.prescribed > 0 ? 1 : 2;
-  run->ws.out.lacks_angles = angles, run->ws.out.lacks_work = work < most ? work : most;
+  ws.out.lacks_work = ws.sys.prescribed > 0 && work == 2 ? 1 : work;
   return 1;
 }
 

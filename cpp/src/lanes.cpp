@@ -29,10 +29,12 @@ static_assert(most_together == n_lanes);
 constexpr std::int64_t most_contacts = 24;
 
 #ifdef CLUTCHWORK_WIDE
-constexpr LaneKernel wide{clutchwork_wide_advance, clutchwork_wide_look, clutchwork_wide_doubt};
+constexpr LaneKernel wide{clutchwork_wide_advance, clutchwork_wide_look, clutchwork_wide_doubt, clutchwork_wide_observe,
+                          clutchwork_wide_fit};
 #endif
 #ifndef CLUTCHWORK_WIDE_ALONE
-constexpr LaneKernel narrow{LaneStep<2>::advance, LaneStep<2>::linearize_at, LaneStep<2>::doubt};
+constexpr LaneKernel narrow{LaneStep<2>::advance, LaneStep<2>::linearize_at, LaneStep<2>::doubt, LaneStep<2>::observe,
+                            LaneStep<2>::fit};
 #endif
 
 /// The widest registers that this processor has; null: none of those that are compiled.

@@ -20,4 +20,8 @@ void clutchwork_wide_advance(void* form, void* step, void* error, void* finite) 
 }
 void clutchwork_wide_look(void* form, void* step, const void* times) { Wide::linearize_at(form, step, times); }
 void clutchwork_wide_doubt(void* form, void* step, void* doubtful) { Wide::doubt(form, step, doubtful); }
+void clutchwork_wide_observe(void* form, void* step, const void* share, void* sound) {
+  Wide::observe(form, step, share, sound);
+}
+void clutchwork_wide_fit(void* form, void* step, void* sound) { Wide::fit(form, step, sound); }
 #endif

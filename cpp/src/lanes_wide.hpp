@@ -6,4 +6,6 @@ extern "C" {
 void clutchwork_wide_advance(void* form, void* step, void* error, void* finite);
 void clutchwork_wide_look(void* form, void* step, const void* times);
 void clutchwork_wide_doubt(void* form, void* step, void* doubtful);
+void clutchwork_wide_observe(void* form, void* step, const void* share, void* sound);
+void clutchwork_wide_fit(void* form, void* step, void* sound);
 }

@@ -17,6 +17,7 @@ STORIES = (
     "start",
     "thermal-launch",
     "wet-clutch",
+    "stick-slip",
     "shift-controller",
     "learn",
     "robotics",

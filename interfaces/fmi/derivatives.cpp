@@ -70,15 +70,18 @@ double Instance::length(const Direction& along, const Point& here) const {
   return most > 0 ? share / most : 0.0;
 }
 
-/// An input at zero, such as a pressure, has a kink there: 1 or -1, the way to its values; 0: none is at zero.
+/// An input at zero, such as a pressure, has a kink there: 1 or -1, the way to its values; 0: none is at zero; 2: two
+/// are, of which one would go below.
 int Instance::way_from_zero(const Direction& along, const Point& here, double by) const {
+  int way = 0;
   for (std::size_t k = 0; k < along.value.size(); ++k) {
     const double gain = along.value[k];
     if (model_.variables[k].kind != Kind::input || gain == 0 || std::fabs(here.value[k]) > 2 * by * std::fabs(gain))
       continue;
-    return gain > 0 ? 1 : -1;
+    const int own = gain > 0 ? 1 : -1;
+    way = way == 0 || way == own ? own : 2;
   }
-  return 0;
+  return way;
 }
 
 /// Whether results have derivatives that can be asked for.
@@ -125,9 +128,12 @@ Answer Instance::change(Direction along, bool is_motion, const References& of, d
   const std::vector<double> lines = now_.on_line;
   for (std::size_t i = 0; i < of.n; ++i) rates[i] = 0;
   Point here;
+  if (kept < 0) return Answer::discard;
   bool done = find(here) && (!is_motion || follow_motion(here, along));
   double by = done ? length(along, here) : 0.0;
   const int way = is_motion ? 0 : way_from_zero(along, here, by);
+  // no direction leaves two kinks both ways
+  done = done && way < 2;
   const Stencil& stencil = way == 0 ? around : onwards;
   if (way < 0) by = -by;
   for (int k = 0; k < points && done && by != 0; ++k) {
@@ -138,7 +144,7 @@ Answer Instance::change(Direction along, bool is_motion, const References& of, d
     for (std::size_t i = 0; i < of.n && done; ++i)
       rates[i] += stencil.weights[k] / by * computed(model_.variables[of.at[i]]);
   }
-  cw_paste(run(), before_.data(), kept);
+  done = cw_paste(run(), before_.data(), kept) == 1 && done;
   now_.on_line = lines;
   is_seen_ = false;
   return done ? Answer::ok : Answer::discard;

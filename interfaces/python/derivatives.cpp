@@ -55,8 +55,12 @@ bool run_chunk(const nb::bytes& system, const Words& words, const Seeds& seeds, 
   static thread_local Memory memory;
   const std::int64_t n = std::int64_t(seeds.shape(1)), m = std::int64_t(words.shape(0));
   const std::int64_t k = std::int64_t(times.shape(0)), used = std::min(width, n - first);
-  const std::int64_t bytes = std::int64_t(system.size()), size = cw_tangents_size(system.c_str(), bytes);
-  cw_tangents* run = size < 0 ? nullptr : cw_tangents_load(system.c_str(), bytes, memory.at_least(size), size);
+  const std::int64_t bytes = std::int64_t(system.size());
+  cw_tangents* run = cw_tangents_load(system.c_str(), bytes, memory.block.get(), memory.bytes);
+  if (run == nullptr) {
+    const std::int64_t size = cw_tangents_size(system.c_str(), bytes);
+    run = size < 0 ? nullptr : cw_tangents_load(system.c_str(), bytes, memory.at_least(size), size);
+  }
   if (run == nullptr) return false;
   for (const auto& [name, setting] : options) cw_tangents_set_option(run, name.c_str(), setting);
   if (!work) cw_tangents_leave_out_work(run);
@@ -128,9 +132,10 @@ nb::tuple tangents(const nb::bytes& system, const Words& words, const Seeds& see
       array(std::move(found.grazes), {g, std::size_t(CW_GRAZE)}), nb::make_tuple(found.component, found.value));
 }
 
-/// Memory for tapes. What is not written is never touched and costs nothing; the last one of each thread is kept, as
-/// memory that has been touched is much faster than new one.
-struct Tapes {
+/// Memory of runs that are followed back, and of their tapes. What is not written is never touched and costs nothing;
+/// the last one of each kind is kept in each thread, as memory that has been touched is much faster than new one.
+struct Blocks {
+  enum Kind : int { run, tape, kinds };
   struct Free {
     void operator()(double* p) const { std::free(p); }
   };
@@ -138,18 +143,20 @@ struct Tapes {
     std::unique_ptr<double[], Free> memory;
     std::int64_t bytes = 0;
   };
-  static Kept& last() {
-    static thread_local Kept kept;
-    return kept;
+  static Kept& last(Kind kind) {
+    static thread_local Kept kept[kinds];
+    return kept[kind];
   }
-  static Kept take(std::int64_t bytes) {
-    if (last().bytes == bytes) {
-      last().bytes = 0;
-      return {std::move(last().memory), bytes};
+  static Kept take(Kind kind, std::int64_t bytes) {
+    if (last(kind).bytes == bytes) {
+      last(kind).bytes = 0;
+      return {std::move(last(kind).memory), bytes};
     }
-    return {std::unique_ptr<double[], Free>(static_cast<double*>(std::malloc(std::size_t(bytes)))), bytes};
+    Kept made{std::unique_ptr<double[], Free>(static_cast<double*>(std::malloc(std::size_t(bytes)))), bytes};
+    if (made.memory == nullptr) throw std::bad_alloc();
+    return made;
   }
-  static void give(Kept&& tape) { last() = std::move(tape); }
+  static void give(Kind kind, Kept&& block) { last(kind) = std::move(block); }
 };
 
 /// A run whose tape is kept, to be followed back for as many weights as are wanted.
@@ -161,10 +168,8 @@ class Adjoint {
     if (probes.shape(0) != words.shape(0)) throw nb::value_error("one probe for each word");
     const std::int64_t bytes = std::int64_t(system.size()), size = cw_adjoint_size(system.c_str(), bytes);
     if (size < 0) throw nb::value_error("the bytes are not a system of this core");
-    memory_.reset(new double[std::size_t(size / 8 + 2)]);
-    tape_ = Tapes::take(tape_bytes);
-    if (tape_.memory == nullptr) throw std::bad_alloc();
-    auto* at = reinterpret_cast<void*>((reinterpret_cast<std::uintptr_t>(memory_.get()) + 15) / 16 * 16);
+    memory_ = Blocks::take(Blocks::run, size + 16), tape_ = Blocks::take(Blocks::tape, tape_bytes);
+    auto* at = reinterpret_cast<void*>((reinterpret_cast<std::uintptr_t>(memory_.memory.get()) + 15) / 16 * 16);
     run_ = cw_adjoint_load(system.c_str(), bytes, at, size, tape_.memory.get(), tape_bytes);
     if (run_ == nullptr) throw std::bad_alloc();
     for (const auto& [name, setting] : options) cw_adjoint_set_option(run_, name.c_str(), setting);
@@ -176,7 +181,7 @@ class Adjoint {
     nb::gil_scoped_release release;
     go(times, t_end);
   }
-  ~Adjoint() { Tapes::give(std::move(tape_)); }
+  ~Adjoint() { Blocks::give(Blocks::run, std::move(memory_)), Blocks::give(Blocks::tape, std::move(tape_)); }
   Adjoint(const Adjoint&) = delete;
   Adjoint& operator=(const Adjoint&) = delete;
 
@@ -189,7 +194,8 @@ class Adjoint {
     bool good = true;
     {
       nb::gil_scoped_release release;
-      std::vector<double> adjoint(std::size_t(cw_adjoint_numbers(run_)));
+      static thread_local std::vector<double> adjoint;
+      adjoint.assign(std::size_t(cw_adjoint_numbers(run_)), 0);
       for (std::size_t i = 0; i < row_numbers_.size(); ++i)
         adjoint[std::size_t(row_numbers_[i])] += row_weights.data()[i];
       for (std::size_t i = 0; i < event_numbers_.size(); ++i)
@@ -234,8 +240,7 @@ class Adjoint {
   }
 
   std::int64_t row_, k_;
-  std::unique_ptr<double[]> memory_;
-  Tapes::Kept tape_;
+  Blocks::Kept memory_, tape_;
   cw_adjoint* run_ = nullptr;
   std::vector<std::int64_t> seeds_;
   std::vector<double> row_numbers_, event_numbers_;

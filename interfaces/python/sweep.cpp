@@ -2,6 +2,7 @@
 
 #include <nanobind/nanobind.h>
 #include <nanobind/ndarray.h>
+#include <nanobind/stl/optional.h>
 #include <nanobind/stl/string.h>
 #include <nanobind/stl/tuple.h>
 #include <nanobind/stl/vector.h>
@@ -52,8 +53,11 @@ void check(const Task& task) {
 
 /// Rows of the first system have as many numbers as those of all.
 void check_columns(const Task& task, std::int64_t row_size) {
-  for (std::int64_t c = 0; c < task.width; ++c)
-    if (task.columns[c] < 0 || task.columns[c] >= row_size) throw nb::index_error("a column is not in the rows");
+  const auto refuse = [&](std::int64_t column) {
+    if (column < 0 || column >= row_size) throw nb::index_error("a column is not in the rows");
+  };
+  for (std::int64_t c = 0; c < task.width; ++c) refuse(task.columns[c]);
+  for (const std::int64_t column : task.inside) refuse(column);
 }
 
 std::int64_t row_size_of(const Bytes& system) {
@@ -68,7 +72,7 @@ std::int64_t row_size_of(const Bytes& system) {
 /// Status, details and rows of a grid, what each thread found, and what a signal handler or `progress` raised, or None.
 nb::tuple sweep(std::vector<nb::bytes> systems, std::vector<std::tuple<Whole, Words>> axes, Lines choice,
                 std::vector<Option> options, double t_end, Numbers times, int parts, Whole columns, bool events,
-                int threads, nb::object progress, std::tuple<int, int> lacks) {
+                int threads, nb::object progress, std::optional<Whole> inside) {
   Task task{};
   for (const nb::bytes& system : systems) task.systems.push_back({system.c_str(), std::int64_t(system.size())});
   for (const auto& [place, words] : axes) {
@@ -81,7 +85,9 @@ nb::tuple sweep(std::vector<nb::bytes> systems, std::vector<std::tuple<Whole, Wo
   task.choice = choice.data(), task.variants = std::int64_t(choice.shape(0));
   task.t_end = t_end, task.times = times.data(), task.instants = std::int64_t(times.shape(0)), task.parts = parts;
   task.columns = columns.data(), task.width = std::int64_t(columns.shape(0)), task.events = events;
-  task.lacks_angles = std::get<0>(lacks), task.lacks_work = std::get<1>(lacks);
+  task.chosen = inside.has_value();
+  const Whole& read = inside ? *inside : columns;
+  task.inside.assign(read.data(), read.data() + read.shape(0));
   check(task);
   for (const Bytes& system : task.systems) check_columns(task, row_size_of(system));
 
@@ -107,10 +113,10 @@ nb::tuple sweep(std::vector<nb::bytes> systems, std::vector<std::tuple<Whole, Wo
   nb::list parts_found;
   for (Found& one : found) {
     const std::size_t n = one.variant.size(), rows = one.times.size(), kept = one.events.size() / event_kept;
-    parts_found.append(nb::make_tuple(owned(std::move(one.variant), {n}), owned(std::move(one.rows), {n}),
-                                      owned(std::move(one.times), {rows}),
-                                      owned(std::move(one.values), {rows, std::size_t(task.width)}),
-                                      owned(std::move(one.events), {kept, event_kept})));
+    parts_found.append(nb::make_tuple(
+        owned(std::move(one.variant), {n}), owned(std::move(one.rows), {n}), owned(std::move(one.times), {rows}),
+        owned(std::move(one.values), {rows, task.inside.size()}), owned(std::move(one.events), {kept, event_kept}),
+        owned(std::move(one.ends), {n, std::size_t(2), std::size_t(task.width)})));
   }
   nb::object lines =
       parts > 0 ? nb::none() : owned(std::move(grid), {variants, std::size_t(task.instants), std::size_t(task.width)});
@@ -123,6 +129,6 @@ nb::tuple sweep(std::vector<nb::bytes> systems, std::vector<std::tuple<Whole, Wo
 void bind_sweep(nb::module_& m) {
   m.def("sweep", &sweep, nb::arg("systems"), nb::arg("axes"), nb::arg("choice"), nb::arg("options"), nb::arg("t_end"),
         nb::arg("times"), nb::arg("parts"), nb::arg("columns"), nb::arg("events"), nb::arg("threads"),
-        nb::arg("progress").none(), nb::arg("lacks") = std::tuple<int, int>(0, 0),
+        nb::arg("progress").none(), nb::arg("inside") = nb::none(),
         "Runs of many variants of one system, on several threads.");
 }

@@ -39,11 +39,12 @@ struct Task {
   double t_end;
   const double* times;  ///< instants of a grid
   std::int64_t instants;
-  int parts;                     ///< rows in every step, 0: the grid
-  const std::int64_t* columns;   ///< numbers of a row that are kept
-  std::int64_t width;            ///< how many
-  bool events;                   ///< whether they are kept
-  int lacks_angles, lacks_work;  ///< what rows need not have: cw_leave_out
+  int parts;                         ///< rows in every step, 0: the grid
+  const std::int64_t* columns;       ///< numbers of a row that are kept
+  std::int64_t width;                ///< how many
+  bool events;                       ///< whether they are kept
+  bool chosen;                       ///< whether runs are told what is read of rows
+  std::vector<std::int64_t> inside;  ///< those of rows inside of steps: cw_read
 };
 
 /// Numbers that tell why a run stopped: component, time, value, number of the row.
@@ -64,6 +65,7 @@ struct Results {
 struct Found {
   std::vector<std::int64_t> variant, rows;  ///< variants and how many rows each has
   std::vector<double> times, values, events;
+  std::vector<double> ends;  ///< what is kept of the first and the last row of each
 };
 
 /// One thread: its memory, and the variants it takes.
@@ -86,7 +88,9 @@ class Worker {
   Found found;
 
  private:
-  static constexpr std::int64_t event_room = 256, step_room = 256;
+  static constexpr std::int64_t event_room = 256;
+  // rows in steps before they are taken away: a group goes on together the longer the more there are
+  static constexpr std::int64_t least_rows = 256, most_rows = 1024, most_numbers = 100'000;
 
   struct alignas(64) Block {
     unsigned char byte[64];
@@ -108,12 +112,12 @@ class Worker {
 
   /// One variant of a group: its system, its run, its rows.
   struct Place {
-    std::int64_t base = -1, size = 0, row_size = 0;
+    std::int64_t base = -1, size = 0, needed = 0, row_size = 0;
     std::vector<std::uint64_t> system;  ///< bytes of the variant
     std::vector<std::int64_t> value;    ///< of each axis that these bytes have
     Memory memory;
     std::vector<double> times, rows;
-    std::vector<double> kept_times, kept;  ///< of the rows in steps up to now
+    std::vector<double> kept_times, kept, ends;  ///< of the rows in steps up to now
     cw_run* run = nullptr;
   };
   Place place_[group];
@@ -151,7 +155,8 @@ class Worker {
       return false;
     }
     for (const auto& [name, value] : task_.options) cw_set_option(p.run, name.c_str(), value);
-    cw_leave_out(p.run, task_.lacks_angles, task_.lacks_work);
+    if (task_.chosen)
+      cw_read(p.run, task_.columns, task_.width, task_.inside.data(), std::int64_t(task_.inside.size()));
     cw_set_poll(p.run, &Course::stopped, &course_);
     for (std::int64_t i = 0; i < task_.instants && task_.parts == 0; ++i) p.times[std::size_t(i)] = task_.times[i];
     return true;
@@ -170,8 +175,7 @@ class Worker {
         p.system[std::size_t(axis.place[k])] = axis.words[value * axis.count + k];
       p.value[a] = value;
     }
-    const std::int64_t size = cw_size(p.system.data(), p.size);
-    p.run = size < 0 ? nullptr : cw_load(p.system.data(), p.size, p.memory.of(size), size);
+    p.run = cw_load(p.system.data(), p.size, p.memory.of(p.needed), p.needed);
     if (p.run != nullptr && cw_row_size(p.run) != p.row_size) make_room(p, cw_row_size(p.run));
   }
 
@@ -179,13 +183,16 @@ class Worker {
     const Bytes& bytes = task_.systems[std::size_t(base)];
     p.system.resize(std::size_t(bytes.size + 7) / 8);
     std::memcpy(p.system.data(), bytes.data, std::size_t(bytes.size));
-    p.base = base, p.size = bytes.size;
+    p.base = base, p.size = bytes.size, p.needed = cw_size(bytes.data, bytes.size);
     p.value.assign(task_.axes.size(), -1);
   }
 
   void make_room(Place& p, std::int64_t row_size) {
     p.row_size = row_size;
-    const std::int64_t rows = task_.parts > 0 ? step_room + task_.parts : task_.instants;
+    const std::int64_t rows =
+        task_.parts > 0
+            ? task_.parts + std::clamp(most_numbers / std::max(row_size, std::int64_t(1)), least_rows, most_rows)
+            : task_.instants;
     p.times.resize(std::size_t(rows));
     p.rows.resize(std::size_t(rows * row_size));
   }
@@ -228,12 +235,19 @@ class Worker {
     }
   }
   void take_steps(Place& p, std::int64_t v, std::int64_t filled) {
-    const std::size_t at = p.kept.size();
-    p.kept.resize(at + std::size_t(filled * task_.width));
-    for (std::int64_t i = 0; i < filled; ++i)
-      keep(p.rows.data() + i * p.row_size, p.kept.data() + at + std::size_t(i * task_.width));
+    const auto wide = std::size_t(task_.width), inside = task_.inside.size();
+    if (p.kept_times.empty() && filled > 0) p.ends.assign(2 * wide, 0.0), keep(p.rows.data(), p.ends.data());
+    if (filled > 0) keep(p.rows.data() + (filled - 1) * p.row_size, p.ends.data() + wide);
+    double* to = grown(p.kept, std::size_t(filled) * inside);
+    for (std::int64_t i = 0; i < filled; ++i) {
+      for (std::size_t c = 0; c < inside; ++c) *to++ = p.rows[std::size_t(i * p.row_size + task_.inside[c])];
+    }
     p.kept_times.insert(p.kept_times.end(), p.times.begin(), p.times.begin() + filled);
     take_events(p.run, v);
+  }
+  static double* grown(std::vector<double>& numbers, std::size_t by) {
+    numbers.resize(numbers.size() + by);
+    return numbers.data() + numbers.size() - by;
   }
   /// The rows of a variant, behind those of the variants before it.
   int close_steps(Place& p, std::int64_t v, const cw_member& member) {
@@ -241,7 +255,9 @@ class Worker {
     found.rows.push_back(std::int64_t(p.kept_times.size()));
     found.times.insert(found.times.end(), p.kept_times.begin(), p.kept_times.end());
     found.values.insert(found.values.end(), p.kept.begin(), p.kept.end());
-    p.kept_times.clear(), p.kept.clear();
+    p.ends.resize(2 * std::size_t(task_.width));
+    found.ends.insert(found.ends.end(), p.ends.begin(), p.ends.end());
+    p.kept_times.clear(), p.kept.clear(), p.ends.clear();
     return member.status;
   }
 

@@ -6,7 +6,8 @@ import numpy as np
 import pytest
 
 import clutchwork as cw
-from clutchwork.calibration.terms import PER_WINDOW, OutputUnits
+from clutchwork.calibration.terms import OutputUnits
+from clutchwork.sweeps.outputs import PER_WINDOW
 from support.engagement import BOTH, GAIN, LINING, LOAD, PRESSURE, SPEED, discs
 
 WINDOW = 0.1
@@ -74,5 +75,5 @@ def test_units_of_jerks_are_those_of_sweeps():
     units = OutputUnits(discs().assemble())
     swept = cw.sweep(discs(), 0.1, vary=[{}], outputs=[cw.squared_jerk("load")])
     assert units.output(cw.squared_jerk("load")) == swept.units["squared_jerk(load)"] == "rad2/s5"
-    assert cw.jerk("load").unit(units) == "rad/s3"
+    assert units.output(cw.jerk("load")) == "rad/s3"
     assert units.output(cw.squared_jerk("lead")) == ""

@@ -98,6 +98,37 @@ void damage() {
   CHECK(refused > 100);
 }
 
+/// Operations in one word have the bits of those that they are made of, for duals too.
+void fused() {
+  const double low = 0.3, high = 0.4, width = 0.5, v = 0.7, input[2] = {300, 1e5};
+  const Operation what[] = {Operation::bell, Operation::add_quotient, Operation::subtract_quotient};
+  const double wanted[] = {clutchwork::exp(-((v / width) * (v / width))), low + v / width, low - v / width};
+  for (int i = 0; i < 3; ++i) {
+    double params[7] = {0, 1, 1, 2, low, high, width};
+    const double points[] = {double(int(what[i]) + 3 * words_per_operation), 0, 5, 6, 6, 1, 3, 0, 1};
+    const auto& p = *reinterpret_cast<const F::Params<double>*>(params);
+    CHECK(F::is_sound(p, points, 3));
+    CHECK(check::same_bits(F::slide(p, At<double>{v, nullptr, input, 0, points}), larger(wanted[i], 0.0)));
+    using S = Dual<double, 1>;
+    const S inputs[2] = {S(300), S(1e5)};
+    const S x = F::slide(p, At<S>{S::variable(v, 0), nullptr, inputs, 0, points});
+    const double slopes[] = {-2 * v / (width * width) * wanted[0], 1 / width, 0};
+    CHECK_NEAR(x.d[0], slopes[i], 1e-14);
+  }
+}
+
+/// A coefficient without a value holds nothing, whichever of both it is.
+void no_value() {
+  for (int gone = 0; gone < 2; ++gone) {
+    double params[6] = {0, 0, 0, 2, 0.3, 0.4};
+    const double points[] = {3, 4, 0, 2, 0, 0}, input[2] = {300, 1e5};
+    params[4 + gone] = NAN;
+    const auto& p = *reinterpret_cast<const F::Params<double>*>(params);
+    const double held = F::hold(p, At<double>{0, nullptr, input, 0, points});
+    CHECK(held != held);
+  }
+}
+
 /// A state of the law: elastic' = v, the coefficient is the state; without a state it is zero at rest.
 void states() {
   double params[6] = {0, 1, 1, 2, 3, 2}, points[15] = {0, 0, 0, 3, 4, 0, 0, 1, 0, 0, 0, 0, 0, 0, 0};
@@ -122,6 +153,8 @@ int test_formula() {
   values();
   lanes_have_the_bits_of_one();
   damage();
+  fused();
+  no_value();
   states();
   return check::result();
 }

@@ -26,8 +26,16 @@ BANNED = {
     r"\bof unusual size\b": "of unusual magnitude",
     r"\bhas not\b(?! [a-z]+(?:ed|n)\b)": "does not have",
     r"\bwhatever the\b.{0,30}\bsays\b": "regardless of",
+    r"(?<!anything )(?<!nothing )(?<!all )\bbut for\b(?! an? )": "except for, up to",
+    r"\ball the same\b(?! (?:size|length|kind|value)s?\b)": "nevertheless",
+    r"\b(?:for good|once and for all)\b": "permanently",
+    r"\bturn(?:s|ed|ing)? round\b": "reverses",
+    r"\bthe other way round\b": "vice versa",
+    r"\bmakes of (?:it|them|the|a)\b": "the result, the effect of",
+    r"\bnothing burns\b": "there is no combustion",
+    r"\bswing(?:s|ing)?\b (?:with|twice|about|slowly|faster)": "oscillates",
 }
-FOLDERS = ("", "docs", "docs/guide", "docs/theory", "decisions", "examples/*")
+FOLDERS = ("", "docs", "docs/elements", "docs/guide", "docs/theory", "decisions", "examples/*")
 PAGES = [path for folder in FOLDERS for path in sorted(ROOT.glob(f"{folder}/*.md" if folder else "*.md"))]
 PAGES = [path for path in PAGES if path.name != "CHANGELOG.md"]
 PROGRAMS = sorted([*(ROOT / "src").rglob("*.py"), *(ROOT / "tools").glob("*.py")])

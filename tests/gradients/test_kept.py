@@ -9,6 +9,7 @@ import pytest
 
 import clutchwork as cw
 from clutchwork.gradients import extremes
+from clutchwork.gradients.finite_differences import ROUND_OFF, Bent, slope
 from clutchwork.gradients.steps import Steps
 from clutchwork.sweeps.outputs import asked
 from support import by_differences, free_numbers
@@ -295,19 +296,106 @@ def test_the_peak_of_a_torque_that_breaks_away_follows_its_capacity() -> None:
     assert tally.compared == 6
 
 
-def test_a_load_that_is_zero_at_a_knot_alone() -> None:
-    # seed 71031: it begins on one side of the knot or on the other, with another rate
+@pytest.mark.parametrize("before", [[(0.01, -20000.0), (0.02, 0.0)], [(0.0, 0.0)]])
+def test_a_load_that_is_zero_at_a_knot_alone(before: list[tuple[float, float]]) -> None:
+    # seed 71031: it begins on one side of the knot or on the other, with another rate; or with the run
     d = cw.Driveline("knot")
     a = d.shaft("a", inertia=0.02, speed=20.0)
-    press = cw.Table([(0.01, -20000.0), (0.02, 0.0), (0.04, 16000.0)])
+    press = cw.Table([*before, (0.04, 16000.0)])
     d.add(cw.Brake("c", shaft=a, friction=cw.Coulomb(static=0.09, kinetic=0.09), gain=6e-4, pressure=press))
-    tally = judged(d, 0.05, ["a.speed", cw.squared_jerk("a")], ["c.pressure.values[2]", "c.pressure.values[3]"])
+    by = [f"c.pressure.values[{len(before) + more}]" for more in (0, 1)]
+    tally = judged(d, 0.05, ["a.speed", cw.squared_jerk("a")], by)
     assert tally.wrong + tally.refused + tally.apart == []
     assert tally.rightly == 1
 
 
-# 0.711: two members give way within 1e-5 of the run, and derivatives are right to 1e-5 of their size alone
-@pytest.mark.parametrize("efficiency", [0.66, 0.715, pytest.param(0.711, marks=pytest.mark.xfail(strict=True))])
+def test_a_motor_passes_rest_while_it_brakes() -> None:
+    # seed 70046: right at rest it drives either way, so that no torque jumped there
+    d, speed, inertia, brakes, drives = cw.Driveline("motor"), 5.0, 0.5, 4.0, 7.0
+    a = d.shaft("a", inertia=inertia, speed=speed)
+    grid = {"speeds": (0.0, 50.0), "motoring": (drives, drives), "generating": (brakes, brakes)}
+    losses = {"torques": (0.0, 3.0), "map": ((1.0, 2.0), (2.0, 3.0)), "derating": ((300.0, 1.0), (400.0, 0.5))}
+    d.add(cw.MotorTorque("m", shaft=a, command=-50.0, **grid, **losses))
+    found = derivatives(d, 1.0, of=["a.speed", "a.angle"], by="a.speed")
+    end = -drives / inertia * (1.0 - speed * inertia / brakes)
+    assert found.values[0] == pytest.approx(end, rel=1e-9)
+    assert found.matrix[0, 0] == pytest.approx(drives / brakes, rel=1e-9)
+
+
+def test_a_mass_that_a_crank_holds_has_no_position_of_its_own() -> None:
+    # seed 80022: the whole function was refused, by the numbers of a driveline that nobody asked for
+    d = cw.Driveline("crank")
+    a, m = d.shaft("a", inertia=0.3), d.mass("m", mass=3.0)
+    d.add(cw.CrankSlider("crank", shaft=a, mass=m, radius=0.01, rod=0.08))
+    with pytest.raises(cw.UseError, match=r"m\.position follows from crank, which holds it"):
+        cw.differentiable(d, 0.1, of="m.position", by="m.position")
+
+
+def test_a_ratio_of_words_that_are_left_of_large_ones() -> None:
+    # seed 60115: what is left of entries of the mass matrix looked like a kink of the driveline
+    here, width = np.array([1.0, 0.0]), 1e-3
+    noisy = np.random.default_rng(1)
+
+    def along(step: float) -> Any:
+        return np.array([1.0 + np.sin(step), 0.2 * step + 7e-15 * noisy.integers(-1, 2)])
+
+    noise = np.array([0.0, ROUND_OFF * 60.0])
+    assert slope(along, here, width, width, np.inf, noise).value == pytest.approx([1.0, 0.2], rel=1e-6)
+    with pytest.raises(Bent):
+        slope(along, here, width, width, np.inf, 0.0 * noise)
+
+
+def test_a_jerk_of_which_the_first_steps_have_a_share() -> None:
+    # seed 80069: a run with derivatives left out the first nanosecond of seven microseconds of slip
+    d = cw.Driveline("first")
+    a, b = d.shaft("a", inertia=0.0355), d.shaft("b", inertia=0.0812, speed=5.36)
+    d.add(cw.Torque("t", shaft=a, torque=-10.9))
+    d.add(cw.BeltContact("c", base=a, follower=b, forward=5.63, backward=0.803, speed=-0.683, tension=3255.0))
+    d.add(cw.SpeedTorque("s", shaft=a, torque=[(4.298, 9.99), (6.902, 4.69), (7.877, 91.4)]))
+    tally = judged(d, 1e-3, [cw.squared_jerk("a")], ["a.inertia", "b.speed"])
+    assert tally.wrong + tally.refused + tally.apart == []
+    assert tally.compared == 2
+
+
+def test_a_wave_may_begin_half_a_turn_later() -> None:
+    # seed 80104: the phase of a filter that dies away is pi or -pi, and so was said to be a kink for all values
+    d = cw.Driveline("filter")
+    a, b = d.shaft("a", inertia=0.4, speed=9.0), d.shaft("b", inertia=0.1)
+    d.add(cw.Damper("k", base=d.housing, follower=a, damping=2.0))
+    d.add(cw.PrescribedPosition("motion", shaft=b, position=-0.00969, cutoff=3.26))
+    found = derivatives(d, 0.1, of=["a.speed", "k.heat"], by="b.angle")
+    assert found.problems == ()
+    assert np.all(found.matrix == 0.0)
+
+
+@pytest.mark.parametrize("start", [0.0, 0.02])
+def test_a_load_that_follows_torques_is_zero_for_a_while(start: float) -> None:
+    # seed 80092: gears without load, which lose something of a torque of either sign
+    d = cw.Driveline("unloaded")
+    a, b = d.shaft("a", inertia=0.003), d.shaft("b", inertia=0.006, speed=102.0)
+    before = [(0.0, 7.0), (start, 7.0), (start, 0.0)] if start else [(0.0, 0.0)]
+    d.add(cw.Torque("t", shaft=a, torque=cw.Table([*before, (0.05, 0.0), (0.05, 15.0)])))
+    d.add(cw.LossyGear("g", input=a, output=b, ratio=2.34, efficiency=0.9, backward_efficiency=0.8))
+    tally = judged(d, 0.08, ["g.heat", "b.speed"], ["t.torque.values[2]", "t.torque.values[4]", "b.inertia"])
+    assert tally.wrong + tally.refused + tally.apart == []
+    assert tally.rightly == 2
+
+
+def test_the_top_of_a_blow_among_short_steps() -> None:
+    # a claw that meshes: rows are right to the tolerance, but of one step of 20 microseconds they moved the top
+    d = cw.Driveline("claw")
+    a, b = d.shaft("a", inertia=0.213, speed=8.1), d.shaft("b", inertia=0.765, speed=11.5)
+    command = cw.Step(height=1.0, start=0.13)
+    d.add(cw.DogClutch("dog", base=a, follower=b, teeth=12, gap=0.05, stiffness=3e4, command=command, lag=0.02))
+    d.add(cw.Torque("t", shaft=a, torque=cw.Table([(0.0, 0.0), (0.152, 6.0), (0.651, -6.0)])))
+    d.add(cw.Damper("r", base=b, follower=d.housing, damping=0.36))
+    tally = judged(d, 0.65, [cw.peak("dog.torque")], ["a.speed", "t.torque.times[2]"])
+    assert tally.wrong + tally.refused + tally.apart == []
+    assert tally.compared == 2
+
+
+# 0.711: what is left of bounds that are reached, which is round-off, was taken for what is left of others
+@pytest.mark.parametrize("efficiency", [0.66, 0.7, 0.711, 0.715])
 def test_a_set_of_gears_with_losses_that_holds_any_load_or_none(efficiency: float) -> None:
     # seed 71021: its limit is the same for any size of the load, so that its guard jumps where it gives way
     d = cw.Driveline("set")

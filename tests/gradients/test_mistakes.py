@@ -26,7 +26,7 @@ WRONG = {
     "contact": ({"of": cw.lock("engine"), "by": BY}, "no contact 'engine'; contacts are c1"),
     "signal": ({"of": "load.sped", "by": BY}, "no signal 'load.sped'; did you mean 'load.speed'?"),
     "output": ({"of": 3, "by": BY}, "3 is not an output"),
-    "jerk": ({"of": cw.jerk("load"), "by": BY}, "no derivative; take signals, or cw.squared_jerk"),
+    "rms jerk": ({"of": cw.rms_jerk("load"), "by": BY}, "is for calibrate alone; take cw.jerk or cw.squared_jerk"),
     "threads": ({"of": "load.speed", "by": BY, "threads": 0}, "threads is 0"),
     "entry": ({"of": "load.speed", "by": "c1.pressure.values[9]"}, "entries are counted from 1"),
     "range": ({"of": "load.speed", "by": "c1.pressure.values[2:4]"}, "counted from 1, [1:3] are all"),

@@ -29,7 +29,7 @@ def test_modes_are_a_table_with_the_shafts_that_move(chain):
     lin = cw.linearise(chain)
     kinds = [mode.kind for mode in lin.modes]
     assert kinds[0] == "free"
-    assert kinds.count("swings") == 2
+    assert kinds.count("oscillates") == 2
     assert lin.modes[0].shape == pytest.approx({"engine": 1.0, "wheels": 1.0, "body": 1.0})
     (heat,) = [mode for mode in lin.modes if not mode.shape]
     assert heat.time_constant == pytest.approx(250.0)

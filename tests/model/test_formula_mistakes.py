@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from pathlib import Path
 from typing import Any
 
@@ -88,8 +89,51 @@ def test_units_that_do_not_fit(text: str, told: str) -> None:
 
 
 def test_masses_slip_in_metres_per_second() -> None:
-    assert mistakes(cw.Formula("mu*exp(-v/w)", mu=0.3, w="1 m/s")) == []
-    assert mistakes(cw.Formula("mu*exp(-v/w)", mu=0.3, w="1 m")) != []
+    # which of both it is, the contact knows
+    assert cw.Formula("mu*exp(-v/w)", mu=0.3, w="1 m/s").problems() == []
+    assert cw.Formula("mu*exp(-v/w)", mu=0.3, w="1 m").problems() != []
+
+
+def test_numbers_in_units_of_the_other_kind_of_motion_are_refused() -> None:
+    (said,) = mistakes(cw.Formula("mu*exp(-v/w)", mu=0.3, w="1 m/s"))
+    assert said == (
+        "expression takes exp of [1/m] in 'exp(-v/w)' at character 4, with the slip of shafts [rad/s]; "
+        "give its numbers other units, or none, which fits any"
+    )
+    for unit, count in (("1 m/s", 0), ("1 rad/s", 1), ("60 rpm", 1), (1.0, 0)):
+        d = cw.Driveline("sledge")
+        law = cw.Formula("mu*exp(-v/w)", mu=0.3, w=unit)
+        d.add(cw.Brake("b", shaft=d.mass("m", mass=1.0), friction=law, gain=1.0, normal_force=1.0))
+        assert len(d.check()) == count, unit
+
+
+@pytest.mark.parametrize(
+    ("text", "told"),
+    [
+        ("where(v < knee, 0.4, 0.2)", "expression jumps from 0.4 to 0.2 at a slip of 3 rad/s, where no step ends"),
+        ("0.3 - 0.1*sign(v - knee)", "expression jumps from 0.4 to 0.3 at a slip of 3 rad/s"),
+        ("0.3 if v < knee or v > 80 else 0.2", "expression jumps from 0.3 to 0.2 at a slip of 3 rad/s"),
+        ("0.2 + 0.1*(1 if temperature < 350 else 0)*knee/3", "expression jumps from 0.3 to 0.2 at a slip of 0.1 rad/s"),
+        ("max(0.2, 0.5 - 0.1*v) + 0*knee", ""),
+        ("where(v < knee, 0.5 - 0.1*v, 0.2)", ""),
+        ("0.2 + 0.1*abs(v - knee)/(1 + v)", ""),
+    ],
+)  # fmt: skip
+def test_a_formula_that_jumps_is_warned_of_and_has_no_gradient(text: str, told: str) -> None:
+    given: dict[str, Any] = (
+        {"temperature": cw.Ramp(offset=300.0, height=100.0, duration=1.0)} if "temperature" in text else {}
+    )
+    law = cw.Formula(text, knee=3.0, at_rest="0.6*knee/3", **given)
+    d = cw.Driveline("brake")
+    d.add(cw.Brake("b", shaft=d.shaft("a", inertia=1.0, speed=10.0), friction=law, gain=1.0, normal_force=10.0))
+    if not told:
+        assert d.check() == []
+        d.simulate(0.1).gradient(of="a.speed", by="b.friction.knee")
+        return
+    with pytest.warns(cw.ModelWarning, match=re.escape(told)):
+        run = d.simulate(0.1)
+    with pytest.raises(cw.UseError, match=r"b.friction jumps from .*, where no event is, so that derivatives would be"):
+        run.gradient(of="a.speed", by="b.friction.knee")
 
 
 @pytest.mark.parametrize(

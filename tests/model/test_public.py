@@ -54,7 +54,7 @@ PUBLIC = [
         "minimum",
         "peak",
     ),
-    *("sweep", "variants"),
+    *("sweep", "times", "variants"),
     *("Differentiable", "Gradient", "NoGradient", "differentiable", "squared_jerk", "to_jax", "to_torch"),
     *("Calibration", "CalibrationError", "CalibrationInterrupted", "calibrate", "limit", "together"),
     *("jerk", "rms_jerk", "slope", "squared_slope"),

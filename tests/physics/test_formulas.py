@@ -12,6 +12,7 @@ import pytest
 
 import clutchwork as cw
 from clutchwork.model.pools import coefficients
+from support.amount import amount
 from support.runs import TIGHT
 
 CURVE: dict[str, float] = {"static": 0.4, "kinetic": 0.3, "speed": 2.0}
@@ -191,3 +192,56 @@ def test_a_model_file_holds_it(tmp_path: Any) -> None:
     again = cw.Driveline.load(tmp_path / "model.toml")
     assert again.assemble().to_bytes() == d.assemble().to_bytes()
     assert again.assemble().changed({"c.friction.w": "30 rpm"}).source.elements[0].friction.w == pytest.approx(np.pi)
+
+
+# times to rest through a kink and a jump: 0.4 tolerances off in the median of 150, five at most at 1e-6
+KINK_ERROR = 10.0
+
+
+@pytest.mark.random
+def test_kinks_and_jumps_of_formulas_are_left_to_the_control_of_steps() -> None:
+    """A speed that falls through a knee of the coefficient, against its closed form; a table ends its steps there."""
+    tables, formulas = list[float](), list[float]()
+    for seed in range(amount(20)):
+        rng = np.random.default_rng([881, seed])
+        low, fall, knee = rng.uniform(0.1, 0.3), rng.uniform(0.005, 0.05), rng.uniform(0.5, 8.0)
+        start, load, high = knee * rng.uniform(1.05, 5.0), rng.uniform(20.0, 200.0), low + fall * knee
+        above = (start - knee) / (load * low)
+        kink = above + np.log(high / low) / (fall * load)
+        curve = [(0.0, high), (knee, low), (1e3, low)]
+        step = cw.Formula("where(v < knee, high, low)", low=low, high=high, knee=knee)
+        laws = {
+            "kink": (cw.Formula("max(low, high - fall*v)", low=low, high=high, fall=fall), kink),
+            "jump": (step, above + knee / (load * high)),
+            "table": (cw.FrictionTable(static=1.001 * high, kinetic=curve), kink),
+        }
+        for name, (law, exact) in laws.items():
+            d = cw.Driveline(name)
+            shaft = d.shaft("s", inertia=1.0, speed=start)
+            d.add(cw.Brake("b", shaft=shaft, friction=law, gain=1.0, normal_force=load))
+            error = abs(cw.lock("b").of(d.simulate(2.0 * exact, rtol=1e-6, atol=1e-6)) / exact - 1.0)
+            (tables if name == "table" else formulas).append(error)
+    assert max(formulas) < KINK_ERROR * 1e-6
+    assert max(tables) < 0.1 * max(formulas)
+
+
+@pytest.mark.parametrize("part", ["kinetic", "static"])
+def test_a_coefficient_without_a_value_at_rest_ends_the_run(part: str) -> None:
+    """Above 600 K the logarithm has none: what holds then is not known."""
+    gone = "(1 + 0*log((600 - temperature)/300))"
+    kinetic, static = (
+        f"{number}*{gone}" if name == part else number for name, number in (("kinetic", "0.2"), ("static", "0.4"))
+    )
+    hot = cw.Ramp(offset=300.0, height=400.0, duration=1.0)
+    d = cw.Driveline("hot")
+    shaft = d.shaft("s", inertia=1.0)
+    d.add(
+        cw.Brake(
+            "b", shaft=shaft, friction=cw.Formula(kinetic, at_rest=static, temperature=hot), gain=1.0, normal_force=20.0
+        )
+    )
+    d.add(cw.Torque("t", shaft=shaft, torque=1.0))
+    with pytest.warns(cw.StoppedEarly, match="a value is not finite: b.capacity is nan"):
+        run = d.simulate(1.5)
+    assert run.status == "not_finite"
+    assert run.time[-1] < 0.75 + 1e-9

@@ -161,3 +161,15 @@ def _continued(seed: int) -> str:
 def test_runs_go_on_from_their_steps() -> None:
     """The balance was found where the phase began: a step behind it is not one of Newton's."""
     sweep(_continued, amount(60))
+
+
+def test_rows_inside_of_steps_balance() -> None:
+    """A torque on a damper, w = T/c: rows between the ends of steps have it as exactly as those at the ends."""
+    damping, torque = 2.0, cw.Sine(amplitude=35.0, frequency=60.0)
+    d = cw.Driveline("inside")
+    a = d.shaft("a", inertia=0.0)
+    d.add(cw.Torque("drive", shaft=a, torque=torque))
+    d.add(cw.Damper("k", base=d.housing, follower=a, damping=damping))
+    run = simulate(d, 0.05)
+    wanted = 35.0 / damping * np.sin(2.0 * np.pi * 60.0 * run.time)
+    assert np.abs(run["a.speed"] - wanted).max() <= 1e-8 * 35.0 / damping

@@ -60,8 +60,10 @@ def test_columns_are_those_of_a_sweep_to_the_last_bit(tmp_path: Path) -> None:
         {"c1.gain": [4e-4, 5e-4, 6e-4], "c1.pressure": {"low": 1e5, "ramp": cw.Ramp(height=2e5, duration=1.0)}},
         [{"c1.gain": 4e-4}, {"c1.gain": 5e-4}, {"c1.gain": 5e-4}],
         cw.variants({"engine.inertia": [0.1, 0.2, 0.3], "c1.gain": [1, 2.5, 3]}),
+        {"*.inertia": cw.times(0.9, 1.1), "c1.gain": cw.times(0.8, 1.0)},
+        cw.design({"*.inertia": cw.times(cw.normal(1.0, 0.02)), "c1.gain": (4e-4, 5e-4)}, 5),
     ],
-    ids=["grid", "list", "table"],
+    ids=["grid", "list", "table", "factors", "design of factors"],
 )
 def test_anything_that_a_sweep_varies(tmp_path: Path, vary: Any) -> None:
     outputs = [cw.at("load.speed", [0.5, 1.0]), "c1.state", cw.peak("c1.slip"), lambda found: found.t_end]

@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 
 import clutchwork as cw
+from clutchwork.assembly.wiring import row_columns
 from clutchwork.declare.core import core
 from clutchwork.declare.schema import Role
 from clutchwork.model.changes import all_names, named, target
@@ -314,3 +315,69 @@ def test_a_shaft_that_loses_its_inertia(other: str):
     vary = {"g.inertia": [0.5, 0.0], other: [0.1, 0.3]}
     found = cw.sweep(system, 1.0, vary=vary, outputs=["a.speed", "e.speed"])
     assert compared(system, found, 1.0, {}, range(len(found))) == ""
+
+
+def rows_of(systems: list[cw.System], t_end: float, read: list[int], inside: list[int] | None) -> list[tuple[Any, ...]]:
+    """Status, times and what is read of rows in steps of runs that go on together."""
+    choice = np.arange(len(systems), dtype=np.int64).reshape(-1, 1)
+    numbers = list(cw.Options(**OPTIONS).core_options().items())
+    given = (np.zeros(0), PARTS, np.array(read, dtype=np.int64), False, 1, None)
+    lean = None if inside is None else np.array(inside, dtype=np.int64)
+    bytes_of = [system.to_bytes() for system in systems]
+    status, _, _, ((which, counts, times, rows, _, ends),), _ = core().sweep(
+        bytes_of, [], choice, numbers, t_end, *given, lean
+    )
+    cuts = np.cumsum(counts)[:-1]
+    parts = zip(which.tolist(), np.split(times, cuts), np.split(rows, cuts), ends, strict=True)
+    return sorted(((status[n].item(), n, *own) for n, *own in parts), key=lambda one: one[1])
+
+
+READ_IN_LANES = ("speed", "acceleration", "state", "element_torque", "contact_torque", "input")
+
+
+@pytest.mark.random
+def test_rows_that_lanes_write_are_those_of_each_run():
+    """Whatever is read of them, and whatever other numbers of rows are left out."""
+
+    def check(seed: int) -> str:
+        rng = np.random.default_rng(seed)
+        system = random_drivelines.describe(seed).driveline().assemble()
+        node, t_end = system.nodes[0], random_drivelines.T_END
+        shares = [1.0, 1.0, *rng.uniform(0.98, 1.02, 6)]
+        try:
+            near = [system.changed({f"{node.name}.inertia": share * (node.inertia or 1.0)}) for share in shares]
+        except cw.ModelError:
+            return ""
+        columns = row_columns(system.counts)
+        known, work = (
+            [at for name in names for at in range(columns[name].start, columns[name].stop)]
+            for names in (READ_IN_LANES, ("element_work", "contact_work"))
+        )
+        inside = sorted(rng.permutation(known)[: rng.integers(1, len(known) + 1)].tolist())
+        whole = rows_of(near, t_end, [*inside, *work], None)
+        lean = rows_of(near, t_end, [*inside, *work], inside)
+        for (status, number, times, rows, edges), (ended, _, at, found, both) in zip(whole, lean, strict=True):
+            if status != ended or not same(times, at) or not same(rows[:, : len(inside)], found):
+                return f"run {number} of {inside}"
+            if not same(edges, both):
+                return f"work of run {number}"
+        return ""
+
+    over_seeds(check, amount(60))
+
+
+def test_a_lane_that_ends_leaves_the_others():
+    """One grows beyond all numbers, one takes too many steps; the others have what they have alone."""
+    d = cw.Driveline("eight")
+    a, b = d.shaft("a", inertia=1e-3, speed=80.0), d.shaft("b", inertia=2.0)
+    d.add(cw.Torque("motor", shaft=a, torque=1.0))
+    coulomb = cw.Coulomb(static=0.2, kinetic=0.15)
+    d.add(cw.Clutch("c", base=a, follower=b, friction=coulomb, gain=0.1, normal_force=40.0))
+    system = d.assemble()
+    torques = [0.1, 0.2, 1e307, 0.3, 0.4, 0.5, 0.6, 0.7]
+    asked = [cw.peak("a.speed"), cw.peak("c.torque"), "c.heat", cw.lock("c"), cw.maximum("motor.torque"), "b.speed"]
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore")
+        found = cw.sweep(system, 100.0, vary={"motor.torque": torques}, outputs=asked)
+    assert found.finished.tolist() == [torque < 1.0 for torque in torques]
+    assert compared(system, found, 100.0, {}, range(8)) == ""

@@ -107,3 +107,21 @@ def test_variants_that_never_lock_are_counted(model, capsys):
     assert main(["sweep", model, "--vary", "c1.gain=1e-6", "--outputs", "lock(c1)"]) == 0
     assert "1 variant: 1 done" in (told := capsys.readouterr().out)
     assert "lock(c1): no value in 1 of 1 variant" in told
+
+
+def test_factors_of_all_names_that_match(model, tmp_path, capsys):
+    out = tmp_path / "sweep.csv"
+    line = ["--vary", "*.inertia*=0.5:1:2", "--vary", "c1.g*n*=2", "--outputs", "lock(c1), jerk(load)"]
+    assert main(["sweep", model, *line, "--out", str(out)]) == 0
+    with out.open(newline="") as file:
+        rows = list(csv.DictReader(file))
+    system = cw.Driveline.load(model).assemble()
+    gain, inertias = system.parameters["c1.gain"].value, {n.name: n.inertia for n in system.nodes if not n.fixed}
+    for row, factor in zip(rows, (0.5, 1.0), strict=True):
+        values = {f"{name}.inertia": factor * inertia for name, inertia in inertias.items()}
+        run = cw.simulate(system.changed({"c1.gain": 2.0 * gain, **values}))
+        assert float(row["lock(c1) [s]"]) == cw.lock("c1").of(run)
+        assert float(row["jerk(load) [rad/s3]"]) == pytest.approx(cw.jerk("load").of(run), rel=1e-9)
+        assert float(row["*.inertia [1]"]) == factor
+    assert main(["sweep", model, "--vary", "c1.gain*=1,2 m"]) == 2
+    assert "a factor has no unit; write c1.gain*=0.9,1.1" in capsys.readouterr().err

@@ -55,10 +55,11 @@ int cw_release_input(cw_run* run, int64_t input);
    alone. It is not part of a saved state. 1: set; 0: no run. */
 int cw_expect_inputs(cw_run* run, int expected);
 
-/* What rows may lack though the options ask for it, because nobody reads it: 0 nothing, 1 rows inside of steps, 2 all
-   rows, which then have it as it is now. The steps are the same. Where speeds are prescribed their work stays in all
-   rows but those inside of steps. It is not part of a saved state. 1: set; 0: no run. */
-int cw_leave_out(cw_run* run, int angles, int work);
+/* Which numbers of rows somebody reads, and which of rows in steps in which nothing happens: `inside`, some of them.
+   Both lists stay with the caller while the run goes on. Rows at the ends of the run and beside events and knots may
+   lack angles and work that nobody reads, other rows whatever is not in `inside`; they have it as it was. The steps are
+   the same. It is not part of a saved state. 1: set; 0: no run, or a number that no row has. */
+int cw_read(cw_run* run, const int64_t* numbers, int64_t n, const int64_t* inside, int64_t n_inside);
 
 /* A number of the parameter pool, before the run starts or between calls. 1: set; 0: no such number, the value is not
    finite, or the number is fixed because it locates a curve or selects a variant, such as an extrapolation. */

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple, TypeVar, cast
 
 from clutchwork.assembly.assemble import assembled
 from clutchwork.assembly.masses import masses
-from clutchwork.assembly.patches import Unpatched, changed_signals, patched, patches
+from clutchwork.assembly.patches import PLAIN, Patch, Unpatched, changed_signals, parameter_place, patched, patches
 from clutchwork.assembly.system_data import GROUPS, LATER, MAKES, SystemData
 from clutchwork.base.errors import ModelError, Problem, warn
 from clutchwork.base.memoize import memoize
@@ -23,12 +23,15 @@ from clutchwork.model.components import component_advice, component_problems
 from clutchwork.model.fields import BROKEN, At, law_problems, value_problems
 from clutchwork.model.findings import findings
 from clutchwork.model.model import Model
+from clutchwork.model.numbers import is_right as is_right_number
+from clutchwork.model.parts import role
 from clutchwork.model.problems import TOO_FAR_APART
 from clutchwork.model.temperatures import temperature_advice
 
 if TYPE_CHECKING:
     from clutchwork.assembly.records import Array
     from clutchwork.base.errors import Problem as Found
+    from clutchwork.declare.schema import Spec
 
 S = TypeVar("S", bound=SystemData)
 
@@ -44,7 +47,7 @@ def changed_system(system: S, changes: Mapping[str, Any]) -> S:
     """A System with other values by name; ModelError where they do not fit."""
     if system.source is None:
         raise ModelError([UNKNOWN_SOURCE])
-    found = quick(system, changes)
+    found = _of_words(system, changes) or quick(system, changes)
     # elements that are warned of are looked at as a whole
     if found is not None and not (system.warnings and found.values):
         return _with(system, found)
@@ -61,18 +64,18 @@ def _with(system: S, found: Quick) -> S:
     for name in LATER:
         getattr(system, name)
     vars(system).pop(MAKES, None)
-    data = bytearray(system.to_bytes())
+    data, starts, before = bytearray(system.to_bytes()), system.starts, system.arrays
     for name, array in found.arrays.items():
-        if array is not system.arrays[name]:
+        if array is not before[name]:
             array.flags.writeable = False
-            data[system.starts[name] : system.starts[name] + array.nbytes] = array.tobytes()
+            data[starts[name] : starts[name] + array.nbytes] = array.tobytes()
     made, arrays = object.__new__(type(system)), MappingProxyType(found.arrays)
     own, kind = vars(system), cast(Any, type(system))
     vars(made).update({name: own[name] for name in _kept_names(kind)})
     numbers = system.numbered._replace(arrays=arrays)
     vars(made).update({"arrays": arrays, "numbered": numbers, MAKES: partial(found.made, system)})
     # what follows from its structure alone
-    vars(made).update({"counts": system.counts, "starts": system.starts, "_bytes": bytes(data)})
+    vars(made).update({"counts": system.counts, "starts": starts, "_bytes": bytes(data)})
     return made
 
 
@@ -144,14 +147,63 @@ class Quick(NamedTuple):
         return new.of(own) if self.inertias else own
 
 
+@memoize
+def _aim(system: SystemData, name: str) -> Target | None:
+    """Where a name leads to, None: nowhere."""
+    return target(owners_of(system), name)
+
+
+class OwnWord(NamedTuple):
+    """A number of an element from which nothing follows but its own word."""
+
+    aim: Target
+    spec: Spec
+    place: int  # among all parameters
+
+
+# what more may follow from a number of an element
+MORE = ("directions", "own_states", "passive", "start_positions", "start_ratio")
+
+
+@memoize
+def _own_word(system: SystemData, name: str) -> OwnWord | None:
+    """The word of a number; None where more may follow from it."""
+    aim, where = _aim(system, name), system.numbered
+    if aim is None or len(aim.path) != 1 or not isinstance(aim.owner, Component) or aim.owner.name in where.referred:
+        return None
+    owner, kind = aim.owner, type(aim.owner)
+    # heat goes to the same place whatever its numbers are, in elements of this package
+    follows = (*MORE, *(() if kind.heat_path.__module__.startswith("clutchwork.") else ("heat_path",)))
+    if role(owner) not in PLAIN or any(getattr(kind, rule) is not getattr(Component, rule) for rule in follows):
+        return None
+    spec = next(spec for item, spec in specs(kind) if item.name == aim.path[0])
+    given = type(getattr(owner, aim.path[0])) is float and spec.what == "param"
+    if not given or spec.choices or ruled(owner, [aim.path]) is not None:
+        return None
+    return OwnWord(aim, spec, parameter_place(where, owner, aim.path[0]))
+
+
+def _of_words(system: SystemData, changes: Mapping[str, Any]) -> Quick | None:
+    """The changes where all of them are such numbers."""
+    found, aims, values = list[Patch](), list[tuple[Target, Any]](), dict[str, Values]()
+    for name, value in changes.items():
+        word = _own_word(system, name) if isinstance(name, str) else None
+        if word is None or not is_right_number(value, word.spec):
+            return None
+        aims.append((word.aim, value))
+        found.append(Patch("params", word.place, [value]))
+        values.setdefault(word.aim.owner.name, []).append((word.aim.path, value))
+    return Quick(patched(system.arrays, found), aims, values, {}, {}) if found else None
+
+
 def quick(system: SystemData, changes: Mapping[str, Any]) -> Quick | None:
     """The changes where they are such; None: everything must be looked at, and assembled, anew."""
-    owners, where = owners_of(system), system.numbered
+    where = system.numbered
     given: dict[str, tuple[Component, Values]] = {}
     aims: list[tuple[Target, Any]] = []
     inertias: dict[str, float] = {}
     for name, value in changes.items():
-        aim, kept = target(owners, name), _kept(value)
+        aim, kept = _aim(system, name) if isinstance(name, str) else None, _kept(value)
         if aim is not None and isinstance(aim.owner, Node) and aim.path == ("inertia",):
             inertias[name] = kept
         elif aim is not None and isinstance(aim.owner, Component) and aim.owner.name not in where.referred:

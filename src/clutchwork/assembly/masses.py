@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from fractions import Fraction
 from functools import cached_property
+from itertools import pairwise
 from math import inf
 from typing import TYPE_CHECKING, Any
 
@@ -76,6 +77,22 @@ class Masses:
     def _order(self) -> list[int]:
         return order(self.inertia, self.wanted)
 
+    @cached_property
+    def _sizes(self) -> list[float]:
+        return list(map(float, self.inertia))
+
+    def _keeps_order(self, inertia: Sequence[Fraction], moved: Iterable[int]) -> bool:
+        """Whether the same speeds stay independent with other inertias at some places."""
+        sizes = self._sizes.copy()
+        for place in moved:
+            sizes[place] = float(inertia[place])
+        rest = self._order[: len(inertia) - len(self.wanted)]
+        # as `order` has them: floats mostly tell them apart
+        return all(
+            sizes[a] < sizes[b] or (sizes[a] == sizes[b] and (inertia[a], -a) < (inertia[b], -b))
+            for a, b in pairwise(rest)
+        )
+
     def patches(self, changes: Mapping[str, Any]) -> list[Patch] | None:
         """The words of other inertias; None where others change too.
 
@@ -83,20 +100,23 @@ class Masses:
         """
         if not changes.keys() <= self.places.keys() or not all(map(_is_inertia, changes.values())):
             return None
-        inertia, sums = list(self.inertia), dict[Word, Fraction]()
+        inertia, sums = list(self.inertia), dict[Word, tuple[int, int]]()
         for name, value in changes.items():
             place = self.places[name]
             inertia[place] = exact(value)
             more = inertia[place] - self.inertia[place]
             for word, factor in self.shares[place].items():
-                sums[word] = sums.get(word, self.matrix[word]) + more * factor
-        if order(inertia, self.wanted) != self._order:
+                # unreduced, which is quicker than a Fraction and has the same quotient
+                above, below = sums.get(word) or self.matrix[word].as_integer_ratio()
+                by = more.denominator * factor.denominator
+                sums[word] = above * by + more.numerator * factor.numerator * below, below * by
+        if not self._keeps_order(inertia, map(self.places.__getitem__, changes)):
             return None
         found = [Patch("inertia", self.places[name], [float(value)]) for name, value in changes.items()]
-        for (array, place), total in sums.items():
+        for (array, place), (above, below) in sums.items():
             try:
                 # the quotient of two whole numbers is rounded once
-                value = total.numerator / total.denominator
+                value = above / below
             except OverflowError:
                 return None
             if not value and array == "mass_value":

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
+from itertools import takewhile
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
@@ -128,10 +129,22 @@ def _thermal(where: Numbered, old: ThermalNode, new: ThermalNode) -> Iterator[Pa
     yield Patch("shared_offset", number, [float(new.temperature)])  # type: ignore[arg-type]
 
 
+def _offset(where: Numbered, element: Component) -> int:
+    """Where the parameters of an element begin."""
+    kind, number = where.places[element.name]
+    return int(where.arrays[f"{'element' if kind is Role.TORQUE else kind.value}_param"][number])
+
+
+def parameter_place(where: Numbered, element: Component, name: str) -> int:
+    """The place of a number of an element that is plain among all parameters."""
+    before = takewhile(lambda one: one[0].name != name, specs(type(element), *WORDS))
+    # a curve has two: where it begins, and how long it is
+    return _offset(where, element) + sum(1 if spec.what == "param" else 2 for _, spec in before)
+
+
 def _parameters(where: Numbered, old: Component, new: Component) -> Iterator[Patch]:
     kind, number = where.places[old.name]
-    prefix = "element" if kind is Role.TORQUE else kind.value
-    yield from _pool(where, int(where.arrays[f"{prefix}_param"][number]), old, new)
+    yield from _pool(where, _offset(where, old), old, new)
     if len(old.own_states()) != len(new.own_states()):
         raise Unpatched
     if kind is not Role.CONTACT:
@@ -237,5 +250,8 @@ def patched(arrays: Mapping[str, NDArray[Any]], found: list[Patch]) -> dict[str,
     for patch in found:
         if made[patch.array] is arrays[patch.array]:
             made[patch.array] = arrays[patch.array].copy()
-        made[patch.array].reshape(-1)[patch.start : patch.start + len(patch.values)] = patch.values
+        if len(patch.values) == 1:
+            made[patch.array].flat[patch.start] = patch.values[0]
+        else:
+            made[patch.array].reshape(-1)[patch.start : patch.start + len(patch.values)] = patch.values
     return made

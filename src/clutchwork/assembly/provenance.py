@@ -97,7 +97,7 @@ class SystemParameter:
 
     @cached_property
     def derivative(self) -> NDArray[np.float64] | None:
-        """Derivatives of its words, the same for all values; None: they depend on the value, or nobody knows them."""
+        """Derivatives of its words, the same for all values; None: they depend on the value, or are unknown."""
         if self.is_word:
             return np.ones(len(self.words))
         known = masses(self._system) if is_mass(self.name) else None

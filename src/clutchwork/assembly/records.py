@@ -27,7 +27,7 @@ class Input:
     spec: Spec  # what it may be
     owner: Component | ThermalNode  # whose it is
     quantity: str  # its name there, "friction.load"
-    given: bool = True  # false: a feature that nobody asked for, which rests at its value
+    given: bool = True  # false: an unused feature, which stays at its value
 
 
 @dataclass(frozen=True)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import field, replace
+from functools import cached_property
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -87,9 +88,10 @@ class Wiring:
     links: tuple[Link, ...] = ()
     sensors: tuple[Branch, ...] = ()
     sums: Mapping[str, tuple[str, ...]] = field(default_factory=dict)
-    unused: frozenset[str] = frozenset()  # inputs of features that nobody asked for
+    unused: frozenset[str] = frozenset()  # inputs of unused features
+    composites: tuple[Component, ...] = ()  # those with signals of their own
 
-    @property
+    @cached_property
     def row_size(self) -> int:
         """Numbers in one output row."""
         return max((part.stop for part in self.columns.values()), default=0)
@@ -132,7 +134,14 @@ def wiring(system: System) -> Wiring:
         sensors=tuple(_branch(component, way, places) for component, way in _ways(system.sensors)),
         sums=system.sums,
         unused=frozenset(item.name for item in system.inputs if not item.given),
+        composites=_composites(system),
     )
+
+
+def _composites(system: System) -> tuple[Component, ...]:
+    """Elements of the model that follow from states of their parts."""
+    elements = () if system.source is None else system.source.elements
+    return tuple(one for one in elements if one.role is Role.COMPOSITE and one.state_sums())
 
 
 def _shared(system: System, components: tuple[Any, ...]) -> Iterator[StateOwner]:

@@ -21,7 +21,7 @@ if TYPE_CHECKING:
 
 @dataclasses.dataclass(init=False, repr=False, eq=False)
 class _Open:
-    """What the standard library makes of a class with one field."""
+    """The class that the standard library generates for one field."""
 
     item: Any
 

@@ -15,7 +15,7 @@ KEPT = "_kept"
 
 
 def memoize(function: Callable[[T, Unpack[Ts]], R]) -> Callable[[T, Unpack[Ts]], R]:
-    """Keep in a thing what a function makes of it, for each set of further arguments.
+    """Cache the result of a function on its first argument, for each set of further arguments.
 
     Threads that ask for the first time together may each make it; all get the one that was there first.
     """

@@ -44,7 +44,7 @@ class Restoring(Scaled):
 
     @cached_property
     def _enough(self) -> float:
-        """What is to spare in the middle of a narrow band is less than half of it; an equation has nothing to spare."""
+        """The margin in the middle of a narrow band is less than half of it; an equation has none."""
         made = [
             FEASIBLE if one.is_equal else max(-SPARE, -BAND * (one.upper - one.lower) / scale)
             for one, scale in zip(self.problem.limits, self.scales, strict=True)

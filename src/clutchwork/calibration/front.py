@@ -17,11 +17,11 @@ from clutchwork.base.paths import fitting
 from clutchwork.base.plural import columns
 from clutchwork.base.progress import followed
 from clutchwork.base.quote import quote
-from clutchwork.calibration.numbers import number
 from clutchwork.calibration.record import CalibrationError, CalibrationRecord
 from clutchwork.plot.chosen import PICTURES
 from clutchwork.plot.figure import figure_of, written
 from clutchwork.plot.style import COLOURS
+from clutchwork.sweeps.numbers import number
 
 if TYPE_CHECKING:
     from clutchwork.calibration.limits import Settled

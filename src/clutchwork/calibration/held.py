@@ -27,5 +27,5 @@ class Held:
 
     @property
     def multiplier(self) -> float:
-        """By how much the goal gets less where the bound that binds moves out by one, or what is asked rises by one."""
+        """Reduction of the goal per unit by which the active bound is relaxed, or the requirement raised."""
         return -self.by_upper if self.is_equal else self.by_lower - self.by_upper

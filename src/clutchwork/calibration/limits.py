@@ -11,7 +11,6 @@ from numpy.typing import NDArray
 from clutchwork.base.classes import dataclass
 from clutchwork.base.errors import UseError
 from clutchwork.base.quote import quote
-from clutchwork.calibration.numbers import bounds, number
 from clutchwork.calibration.terms import (
     Jerk,
     OutputUnits,
@@ -26,6 +25,7 @@ from clutchwork.calibration.terms import (
     term,
 )
 from clutchwork.declare.calls import explained
+from clutchwork.sweeps.numbers import bounds, number
 
 if TYPE_CHECKING:
     from clutchwork.calibration.names import TimeTable

@@ -16,10 +16,10 @@ from clutchwork.base.quote import quote
 from clutchwork.calibration.limits import Limit, Settled, WeightedSum, summed
 from clutchwork.calibration.moves import Moves, Variable
 from clutchwork.calibration.names import TimeTable, curve, numbers
-from clutchwork.calibration.numbers import pair
 from clutchwork.calibration.terms import OutputUnits, SquaredSlope, TimeSpan
 from clutchwork.calibration.together import FACTOR, VALUE, Together
 from clutchwork.gradients.parameters import changes
+from clutchwork.sweeps.numbers import pair
 
 if TYPE_CHECKING:
     from clutchwork.assembly.system import System
@@ -160,7 +160,7 @@ def _twice(unknowns: Sequence[Variable]) -> Iterable[str]:
 
 
 def _scattered(unknowns: Sequence[Variable], scatter: Sequence[Variable]) -> Iterable[str]:
-    """Numbers that are free, and set by the scatter all the same."""
+    """Numbers that are free although the scatter sets them."""
     free = {name for one in unknowns for name in one.numbers}
     for one in scatter:
         if one.kind == VALUE and one.name in free:

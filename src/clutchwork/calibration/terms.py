@@ -13,20 +13,27 @@ from numpy.typing import NDArray
 
 from clutchwork.base.classes import dataclass
 from clutchwork.base.errors import UnknownName, UseError
-from clutchwork.base.quote import quote
 from clutchwork.calibration.names import curve
-from clutchwork.calibration.numbers import number, pair
 from clutchwork.declare.calls import explained
 from clutchwork.results.channels import channels
-from clutchwork.results.felt import WINDOW, felt_jerk
-from clutchwork.sweeps.outputs import AtEnd, AtTimes, Computed, Extreme, Integral, Output, SquaredJerk, When, named
-from clutchwork.sweeps.result import unit_of
+from clutchwork.sweeps.outputs import (
+    AtEnd,
+    AtTimes,
+    Computed,
+    Extreme,
+    FeltJerk,
+    Integral,
+    Output,
+    SquaredJerk,
+    When,
+    named,
+)
+from clutchwork.sweeps.result import JERKS, unit_of
 
 if TYPE_CHECKING:
     from clutchwork.assembly.system import System
     from clutchwork.calibration.names import TimeTable
     from clutchwork.gradients.parameters import Tunable
-    from clutchwork.run.trajectory import Trajectory
 
 Array = NDArray[np.float64]
 OUTPUTS = (AtEnd, AtTimes, Extreme, Integral, SquaredJerk, When)
@@ -76,11 +83,6 @@ class OutputUnits:
             return ""
 
 
-# a jump of the acceleration is a triangle of the jerk, two windows wide; its peak lies between two instants and is
-# missed by half a step over the window at most, 3 %
-PER_WINDOW = 16
-# of jerks by those of speeds
-RATES = {"rad/s": "rad/s3", "m/s": "m/s3"}
 Rows: TypeAlias = "tuple[Array, Array]"
 
 
@@ -139,7 +141,7 @@ class OfShaft:
 
     def unit(self, units: OutputUnits) -> str:
         """Of its speed, over seconds squared."""
-        return RATES.get(units.output(AtEnd(f"{self.shaft}.speed")), "")
+        return JERKS.get(units.output(AtEnd(f"{self.shaft}.speed")), "")
 
 
 @dataclass(frozen=True)
@@ -160,47 +162,43 @@ class OfTable:
 
 
 @dataclass(frozen=True)
-class Jerk(OfShaft):
-    """The size of the jerk of a shaft or a mass, averaged over windows: second differences of its speed."""
+class Jerk:
+    """The magnitude of the jerk of a shaft or a mass at all instants at which it is felt."""
 
-    word: ClassVar[str] = "jerk"
-    window: float  # s
-    between: tuple[float, float] | None = None  # s
+    jerk: FeltJerk
+
+    @property
+    def name(self) -> str:
+        """What messages call it."""
+        return self.jerk.name
+
+    @property
+    def shaft(self) -> str:
+        """Whose jerk it is."""
+        return self.jerk.shaft
+
+    def unit(self, units: OutputUnits) -> str:
+        """That of the output."""
+        return units.output(self.jerk)
 
     def needs(self, span: TimeSpan) -> list[Any]:
         """Its speed at instants that lie a small part of a window apart."""
-        (first, last), step = self.inside(span), self.window / PER_WINDOW
-        count = int((last - first) / step * (1.0 + 1e-12))
-        times = np.minimum(first + step * np.arange(count + 1), last)
-        return [AtTimes(f"{self.shaft}.speed", tuple(times.tolist()))]
-
-    def inside(self, span: TimeSpan) -> tuple[float, float]:
-        """When it counts [s]."""
-        first, last = self.between or span
-        return max(first, span.begin), min(last, span.end)
+        return [AtTimes(self.jerk.signal, tuple(self.jerk.times(*span).tolist()))]
 
     def faults(self, span: TimeSpan) -> list[str]:
         """Why there is no window in a run."""
-        first, last = self.inside(span)
-        if last - first >= 2.0 * self.window * (1.0 - 1e-9):
+        one = self.jerk
+        if not one.is_too_long(*span):
             return []
+        first, last = one.inside(*span)
         have = f"there are {max(last - first, 0.0):g} s of the run"
-        return [f"{self.name}: two windows of {self.window:g} s take {2.0 * self.window:g} s, {have}; give a window= "
+        return [f"{self.name}: two windows of {one.window:g} s take {2.0 * one.window:g} s, {have}; give a window= "
                 "or between= that fits, or a longer run"]  # fmt: skip
 
     def rows(self, given: TermData) -> Rows:
         """Two values for each window: of either sign, the larger one is the size."""
-        # docs/theory/jerk.md (1)
-        value, slope = (felt_jerk(one, self.window, PER_WINDOW) for one in (given.values, given.slopes))
+        value, slope = self.jerk.felt(given.values), self.jerk.felt(given.slopes)
         return np.concatenate([value, -value]), np.concatenate([slope, -slope])
-
-    def largest(self, run: Trajectory) -> float:
-        """The largest of a run, for `sweep`; NaN where that did not reach its end, or has no two windows."""
-        span = TimeSpan(run.options.t_start, run.t_end)
-        if not run.finished or self.faults(span):
-            return float("nan")
-        (speed,) = self.needs(span)
-        return float(np.max(np.abs(felt_jerk(speed.of(run), self.window, PER_WINDOW))))
 
 
 @dataclass(frozen=True)
@@ -282,26 +280,6 @@ def _column(given: TermData, column: Sequence[Tunable]) -> Rows:
     return made, slopes
 
 
-@explained("cw.jerk", shaft="'car'")
-def jerk(shaft: str, window: Any = WINDOW, between: Any = None) -> Jerk:
-    """The magnitude of the jerk of a shaft [rad/s3] or a mass [m/s3] throughout the run, over windows.
-
-    For `calibrate`; in a sweep it is the largest of a run.
-
-    Parameters: shaft, its name; window [s], or with a unit: what is shorter does not count, 0.05 s is what a person
-    feels; between, two times [s], two windows apart or more, by default the whole run. 16 values a window; a
-    jump of the acceleration counts as its height over the window, less 3 % at most; one as the run begins does not
-    count, nor do those within a window of its ends in full. docs/theory/jerk.md (1)
-    """
-    length = number(window, "s")
-    if length is None or length <= 0.0:
-        raise UseError("jerk", [f"window is {quote(window)}: give a time > 0 s, such as 0.05"])
-    ends = None if between is None else pair(between, "s")
-    if between is not None and (ends is None or ends[1] - ends[0] < 2.0 * length):
-        raise UseError("jerk", [f"between is {quote(between)}: give two times [s], two windows apart or more"])
-    return Jerk(named("jerk", shaft, "car"), length, ends)
-
-
 @explained("cw.rms_jerk", shaft="'car'")
 def rms_jerk(shaft: str) -> RmsJerk:
     """The root of the mean square of the jerk of a shaft [rad/s3] or a mass [m/s3] over a run, for `calibrate`.
@@ -333,7 +311,9 @@ def term(given: Any) -> Term | None:
     """The term that a goal or a limit means; None where it is none."""
     if isinstance(given, str):
         return OutputTerm(AtEnd(given))
-    if isinstance(given, Jerk | RmsJerk | TableSlope | SquaredSlope):
+    if isinstance(given, FeltJerk):
+        return Jerk(given)
+    if isinstance(given, RmsJerk | TableSlope | SquaredSlope):
         return given
     return OutputTerm(given) if isinstance(given, OUTPUTS) else None
 
@@ -343,4 +323,4 @@ def is_computed(given: Any) -> bool:
     return isinstance(given, Computed) or callable(given)
 
 
-__all__ = ["Output", "Term", "jerk", "rms_jerk", "slope", "squared_slope", "term"]
+__all__ = ["Output", "Term", "rms_jerk", "slope", "squared_slope", "term"]

@@ -7,8 +7,8 @@ from collections.abc import Sequence
 from clutchwork.base.classes import dataclass
 from clutchwork.base.errors import UseError
 from clutchwork.base.quote import quote
-from clutchwork.calibration.numbers import pair
 from clutchwork.declare.calls import explained
+from clutchwork.sweeps.numbers import pair
 
 FACTOR, SHIFT, VALUE = "factor", "shift", "value"
 

@@ -78,7 +78,7 @@ def _write(exported: Exported, folder: Path, whole: bool) -> Path:
     core = {**sources(), GENERATED / FILE: ("\n".join(parts(exported.system, whole)) + "\n").encode()}
     for path, content in core.items():
         _put(folder / "core" / path, content)
-    # these belong to whoever edits them
+    # these belong to their editor
     for template in sorted(TEMPLATES.iterdir()):
         if not (folder / template.name).exists():
             _put(folder / template.name, template.read_bytes())

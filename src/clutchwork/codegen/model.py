@@ -75,7 +75,7 @@ class Exported:
         return {path: k for path, k in self.system.places.items() if run.is_settable(k, float(values[k]))}
 
     def parameter(self, path: str) -> SystemParameter | None:
-        """What may be said of a number by its path; None: it is one of a part that nobody can name."""
+        """Description of a number by its path; None: it belongs to a part without a name."""
         return self.system.parameters[path] if path in self.known else None
 
     @cached_property

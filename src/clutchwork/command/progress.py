@@ -22,5 +22,5 @@ def bar(t_start: float, t_end: float, *, hidden: bool = False) -> Iterator[Progr
     wanted = not hidden and sys.stderr.isatty() and find_spec("tqdm") is not None
     looks = {"bar_format": MEASURED, "unit": "s", "delay": PATIENCE, "leave": False}
     with followed(wanted, t_end, "run", "(time, t_end)", t_start, **looks) as shown:
-        # a run takes the same stretches whether somebody watches or not
+        # a run takes the same stretches with and without progress
         yield lambda time, _: shown(time) if shown else None

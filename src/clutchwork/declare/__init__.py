@@ -24,6 +24,7 @@ from clutchwork.declare.node import Segment as Segment
 from clutchwork.declare.node import ShiftTable as ShiftTable
 from clutchwork.declare.node import Signal as Signal
 from clutchwork.declare.node import SignalLike as SignalLike
+from clutchwork.declare.node import StateSum as StateSum
 from clutchwork.declare.node import SupplyPower as SupplyPower
 from clutchwork.declare.node import TabledComposite as TabledComposite
 from clutchwork.declare.node import ThermalNode as ThermalNode

@@ -1,4 +1,4 @@
-"""Calls with wrong arguments: all that is wrong with one at once, in the words of its declaration."""
+"""Wrong arguments of a call, all reported at once in the words of its declaration."""
 
 from __future__ import annotations
 
@@ -43,7 +43,7 @@ SUCH = {
 
 
 def explained(call: str, **such: str) -> Callable[[F], F]:
-    """Let a function answer a call that does not fit it with a UseError that names every mistake.
+    """Make a function raise a UseError that names every mistake of a call that does not fit its signature.
 
     Parameters: such, what arguments may be, as Python writes it, where that is not what `SUCH` says.
     """
@@ -66,7 +66,7 @@ def explained(call: str, **such: str) -> Callable[[F], F]:
 
 
 def explained_methods(call: str) -> Callable[[T], T]:
-    """Let all public methods of a class do so, those that do not yet.
+    """The same for all public methods of a class that do not do so yet.
 
     Parameters: call, what messages call an object of the class.
     """
@@ -85,7 +85,7 @@ def explained_methods(call: str) -> Callable[[T], T]:
 
 
 def explain(cls: Any) -> None:
-    """Let the constructor of a declaration do so."""
+    """The same for the constructor of a declaration."""
     if getattr(cls.__init__, "__module__", "") == dataclass.__module__:
         # which asks for this where a call does not fit, and costs nothing where it does
         cls._explained = staticmethod(_explained)
@@ -104,7 +104,7 @@ def explain(cls: Any) -> None:
 
 
 def _explained(cls: Any, args: tuple[Any, ...], named: Mapping[str, Any]) -> None:
-    """A UseError that names every mistake of a call, where there is one."""
+    """A UseError that names every mistake of a call, if there is any."""
     problems = list(_problems(cls, args, named, _meanings(cls)))
     if problems:
         raise UseError(f"cw.{cls.__name__}({_name(args, named)})", problems) from None
@@ -116,7 +116,7 @@ def _name(args: tuple[Any, ...], named: Mapping[str, Any]) -> str:
 
 
 def _meanings(cls: type) -> dict[str, str]:
-    """What each field asks for; that of the unit of what a signal drives is left open."""
+    """What each field expects; the unit of what a signal drives is left open."""
     if not is_dataclass(cls):
         return {}
     return {
@@ -128,7 +128,7 @@ def _meanings(cls: type) -> dict[str, str]:
 def _problems(
     function: Callable[..., Any], args: tuple[Any, ...], named: Mapping[str, Any], meanings: Mapping[str, str]
 ) -> Iterator[str]:
-    """What does not fit the parameters of a function; nothing where all does."""
+    """Arguments that do not fit the parameters of a function; empty if all do."""
     parameters = list(inspect.signature(function).parameters.values())
     any_number = any(p.kind is p.VAR_POSITIONAL for p in parameters)
     by_place = [p.name for p in parameters if p.kind in (p.POSITIONAL_ONLY, p.POSITIONAL_OR_KEYWORD)]

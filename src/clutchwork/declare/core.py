@@ -1,4 +1,4 @@
-"""The compiled core, loaded when it is first needed, and the numbers of declarations in it."""
+"""The compiled core, loaded on first use, and the index of each declaration in it."""
 
 from __future__ import annotations
 
@@ -44,7 +44,7 @@ def derivatives() -> Any:
 
 
 def number(cls: Any) -> int:
-    """The number of a declaration in the core, among those of its role; ImportError when the core knows another one."""
+    """Index of a declaration in the core within its role; ImportError if the core was built from another."""
     return _number(cls.role, cls.kind)
 
 
@@ -58,7 +58,7 @@ def _number(role: Role, kind: str) -> int:
 
 @cache
 def _places() -> dict[str, int]:
-    """Place of each declaration among those of its role, by its text, as the core was built."""
+    """Index of each declaration among those of its role, by its text, as the core was built."""
     counted, places = Counter[str](), dict[str, int]()
     for line in core().schema.splitlines():
         role = line.partition(" ")[0]

@@ -26,7 +26,7 @@ NAME = ("name", "(text, required): its path in results and messages")
 
 
 class FieldDescription(NamedTuple):
-    """A field in words; empty where there is nothing to say."""
+    """Description of a field; empty if there is none."""
 
     name: str
     sort: str  # "number", "signal", "port" ...
@@ -61,7 +61,7 @@ def _default(item: Field[Any], spec: Spec) -> str:
 
 
 def default_in_words(default: Any, spec: Spec) -> str:
-    """A default as model files write it, or what stands in its place."""
+    """A default as model files write it, or its replacement."""
     if default is None:
         return "the housing" if spec.what == "port" else "none"
     if spec.flag:
@@ -87,18 +87,18 @@ def _bounded(told: FieldDescription) -> str:
 
 
 def words(cls: type) -> str:
-    """What a declaration says of itself, without its parameters."""
+    """The description of a declaration, without its parameters."""
     own = vars(cls).get("__doc__") or ""
     return inspect.cleandoc(own.words if isinstance(own, _Docstring) else own)
 
 
 def summary(cls: type) -> str:
-    """The first sentence or two of what a declaration says of itself, on one line."""
+    """The first sentence or two of a description, on one line."""
     return words(cls).partition("\n\n")[0].replace("\n", " ")
 
 
 def docstring(cls: type) -> str:
-    """The words of a declaration, then its parameters."""
+    """The description, then the parameters."""
     lines = "\n".join(f"    {name} {text}" for name, text in parameters(cls))
     return f"{words(cls)}\n\nParameters:\n{lines}" if lines else words(cls)
 
@@ -118,7 +118,7 @@ def _parameter(item: Field[Any]) -> Parameter:
 
 
 class _Docstring:
-    """The docstring of a class, written when it is read: the import pays nothing for it."""
+    """The docstring of a class, composed on first access, so that the import costs nothing."""
 
     def __init__(self, words: str) -> None:
         self.words = words
@@ -128,6 +128,6 @@ class _Docstring:
 
 
 def document(cls: Any) -> None:
-    """Let help() and editors show all parameters of a declaration."""
+    """Make help() and editors show all parameters of a declaration."""
     cls.__doc__ = _Docstring(cls.__doc__ or "")
     cls.__signature__ = LazySignature(signature)

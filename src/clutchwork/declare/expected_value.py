@@ -1,4 +1,4 @@
-"""What a field of a declaration asks for, in words."""
+"""What value a field of a declaration expects, in words."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from clutchwork.declare.wording import kinds_of
 
 
 def wanted(spec: Spec, unit: str) -> str:
-    """What a field asks for, in words."""
+    """What value a field expects, in words."""
     if spec.choices:
         return f"one of {', '.join(spec.choices)}"
     return {

@@ -11,7 +11,7 @@ from clutchwork.base.classes import dataclass
 
 @dataclass(frozen=True)
 class Hook:
-    """Functions of a header that go together."""
+    """Functions of a header that belong together."""
 
     names: tuple[str, ...]
     concept: str  # that they fulfil, in components/component.hpp
@@ -49,7 +49,7 @@ def hooks_of(role: str) -> tuple[Hook, ...]:
 
 
 def hook_problems(role: str, names: tuple[str, ...]) -> list[str]:
-    """What is wrong with the hooks that a declaration names: unknown ones, and such that lack their companions."""
+    """What is wrong with the hooks that a declaration names: unknown ones, and ones without their companions."""
     known = [name for hook in hooks_of(role) for name in hook.names]
     found = [f"hooks: no {name!r}{_near(name, known)}; {_offer(role, known)}" for name in names if name not in known]
     for hook in hooks_of(role):

@@ -212,8 +212,6 @@ METHODS = {"auto": 0, "rodas5p": 1, "dopri5": 2, "fixed": 3}
 # what the method "fixed" does not take, by number: (name, what it is); a number keeps its meaning
 REFUSALS = {
     1: ("varying_ratio", "its ratio varies"),
-    2: ("stop", "it is a stop with impacts"),
-    3: ("load_dependent", "its friction follows its own load"),
     4: ("chatters", "its law jumps with the sign of the slip and never sticks"),
     5: ("many_speeds", f"the model has more than {MOST_FIXED_SPEEDS} independent speeds"),
     6: ("bristles", "its bristles or teeth move within any step"),

@@ -42,7 +42,7 @@ class Domain(Enum):
 
 @dataclass(frozen=True, repr=False)
 class Node:
-    """A shaft, a mass or the housing, as `Driveline.shaft`, `.mass` and `.housing` hand it out.
+    """A shaft, a mass or the housing, as returned by `Driveline.shaft`, `.mass` and `.housing`.
 
     Parameters:
         name (text, required): its path in results and messages
@@ -61,7 +61,7 @@ class Node:
     fixed: bool = False
 
     def _accept(self) -> None:
-        """Values with units are put into SI."""
+        """Converts values with units to SI."""
         values = vars(self)
         for name, unit in zip(PLACES, NODE_UNITS[self.domain], strict=True):
             values[name] = to_si.TargetUnit(unit).number(values[name])
@@ -85,7 +85,7 @@ HOUSING = Node("housing", fixed=True)
 
 @dataclass(frozen=True, repr=False)
 class ThermalNode:
-    """A mass that holds heat, or an ambient of given temperature, as `Driveline.thermal` and `.ambient` hand it out.
+    """A thermal mass, or an ambient of given temperature, as returned by `Driveline.thermal` and `.ambient`.
 
     Parameters:
         name (text, required): its path in results and messages
@@ -116,7 +116,7 @@ PLAIN |= {Node, ThermalNode, Domain}
 
 
 class Work(Flag):
-    """What becomes of the work of an element; STORE is joined to another by `|`."""
+    """Where the work of an element goes; STORE is combined with another by `|`."""
 
     SOURCE = auto()  # it comes from outside of the driveline, or goes there: drives and loads
     STORE = auto()  # the element stores it and gives it back, as much as `stored` says
@@ -131,7 +131,7 @@ class Passive(NamedTuple):
 
 
 class HeatPath(NamedTuple):
-    """The thermal node that takes the heat of an element, and the share of it that gets there."""
+    """The thermal node that takes the heat of an element, and its share of that heat."""
 
     node: ThermalNode
     share: float
@@ -152,8 +152,20 @@ class Entry(NamedTuple):
     fault: tuple[str, str] = ("", "")  # why it does not fit its place, and the remedy
 
 
+class StateSum(NamedTuple):
+    """A signal of an element that is a weighted sum of states: its last word, unit, weights of states, and offset.
+
+    States are named within the element, "force", or "segment_1.spring_torque" of a part.
+    """
+
+    name: str
+    unit: str
+    weights: Mapping[str, float]
+    offset: float = 0.0
+
+
 class ShiftTable(NamedTuple):
-    """The gears of a gearbox; all names are those of results."""
+    """The gears of a gearbox; names are those in results."""
 
     name: str  # "gearbox"
     input: str  # shaft, "gearbox.in"
@@ -166,7 +178,7 @@ class ShiftTable(NamedTuple):
 
 
 class DeclarationType(type):
-    """Class of declarations: dir() and help() list what their users need, and no hook that only the engine calls."""
+    """Metaclass of declarations: dir() and help() leave out the hooks that only the engine calls."""
 
     # help() asks a class for its docstring by way of its own class, whose docstring would hide that of the declaration
     __doc__ = vars(type)["__doc__"]
@@ -197,7 +209,7 @@ class Declared(metaclass=DeclarationType):
 
 @dataclass(frozen=True, repr=False)
 class Element(Declared):
-    """An element with a name that is its path in results and errors, as its users see it.
+    """An element as its users see it; its name is its path in results and errors.
 
     Parameters:
         name (text, required): its path in results and messages
@@ -243,15 +255,15 @@ class Component(Element):
     locked = False
 
     def problems(self) -> Found:
-        """What the bounds of single values cannot say, as (quantity, what is wrong, remedy)."""
+        """Mistakes beyond the bounds of single values, as (quantity, what is wrong, remedy)."""
         return []
 
     def law_problems(self) -> Found:
-        """What it cannot do with its friction law, as `problems`; asked once both make sense."""
+        """What it cannot do with its friction law, as `problems`; called once both are valid."""
         return []
 
     def parts(self) -> Iterable[Part]:
-        """What it is made of, named `{self.name}.{part}`; nothing: it is one piece.
+        """Its parts, named `{self.name}.{part}`; empty: it is one piece.
 
         One part may have the name of the component itself and stands for it in events and results. Parts refer to
         each other by name, so `HeatFlow(self)` is that of this part. A shaft or mass among them starts at the speed
@@ -267,11 +279,11 @@ class Component(Element):
         return {}
 
     def notes(self) -> Sequence[str]:
-        """What is worth knowing of it and follows from its numbers, such as natural frequencies; `check` shows it."""
+        """Derived quantities worth knowing, such as natural frequencies; `check` shows them."""
         return ()
 
     def entries(self) -> Iterable[Entry]:
-        """The elements that its tables of elements describe, with mistakes or without."""
+        """The elements that its tables of elements describe, valid or not."""
         return ()
 
     def held(self) -> Mapping[str, Part]:
@@ -311,10 +323,14 @@ class Component(Element):
         return self.initial_states()
 
     def state_scales(self) -> tuple[float, ...]:
-        """Of a process: what one unit of each of its states in the solver is worth, 1 where nothing is said.
+        """Of a process: the scale of each of its states in the solver, 1 by default.
 
         The tolerances of a run are absolute too, so a state should not be small against 1.
         """
+        return ()
+
+    def state_sums(self) -> tuple[StateSum, ...]:
+        """Further signals that follow from its states, or from those of its parts."""
         return ()
 
     def start_positions(self) -> tuple[tuple[Node, float], ...]:
@@ -322,7 +338,7 @@ class Component(Element):
         return ()
 
     def passive(self) -> Passive | None:
-        """Stiffness and damping of an element whose torque is nothing else; None: its torque is another.
+        """Stiffness and damping of an element whose whole torque they are; None: it has another torque.
 
         With a stiffness its first state is the torque of that spring, stiffness times twist. The damping of such
         elements determines the speed of a shaft without inertia, and springs alone keep their balance there, in
@@ -336,7 +352,7 @@ class Component(Element):
         return 0.5 * states[0] * states[0] / passive.stiffness if passive and passive.stiffness else 0.0
 
     def heat_path(self) -> HeatPath | None:
-        """Where its heat goes; None: nowhere that is followed."""
+        """Where its heat goes; None: to no node of the model."""
         return None
 
     def drives(self) -> bool | None:
@@ -344,7 +360,7 @@ class Component(Element):
         return None
 
     def fault_warning(self) -> str:
-        """What to warn of when a fault of it is triggered, such as "cannot transmit"; empty: nothing."""
+        """Warning when a fault of it is triggered, such as "cannot transmit"; empty: none."""
         return ""
 
 
@@ -357,7 +373,7 @@ class TabledComposite(Component):
 
     @classmethod
     def entry_kinds(cls, values: Mapping[str, Any]) -> Mapping[str, str]:
-        """Kind of each element that its tables may describe, "shift.A" -> "clutch", where they do not say another.
+        """Default kind of each element that its tables may describe, "shift.A" -> "clutch".
 
         Parameters: values, of its fields, some of which may be missing.
         """
@@ -368,11 +384,11 @@ class TabledComposite(Component):
         raise NotImplementedError
 
     def content(self, name: str) -> Mapping[str, Any]:
-        """What a field of the sort "data" leads to, as a file holds it."""
+        """The content of a field of the sort "data", as a file holds it."""
         raise NotImplementedError
 
     def shift_table(self) -> ShiftTable | None:
-        """Gears by the contacts that are closed in them, of a gearbox."""
+        """Of a gearbox: its gears by the contacts that are closed in them."""
         return None
 
     def grips(self) -> Iterable[tuple[str, Node, Node]]:
@@ -408,16 +424,20 @@ class Law(Declared):
         """What the bounds of single values cannot say, as (quantity, what is wrong, remedy)."""
         return []
 
+    def slip_problems(self, unit: str) -> Found:  # noqa: ARG002, most say nothing of units
+        """What does not fit a contact whose slip has a unit, rad/s or m/s."""
+        return []
+
     def own_states(self) -> tuple[State, ...]:
         """The states in use, the first ones of `states`."""
         return self.states
 
     def advice(self) -> Found:
-        """Properties that are allowed and rarely wanted, as (quantity, what is so, remedy); each becomes a warning."""
+        """Allowed but rarely intended properties, as (quantity, what is unusual, remedy): warnings."""
         return []
 
     def sliding(self) -> float | None:
-        """Kinetic coefficient at vanishing slip; None: the compiled core is asked, or the law says what is wrong."""
+        """Kinetic coefficient at vanishing slip; None: the compiled core evaluates it, or `problems` covers it."""
         return None
 
     @classmethod
@@ -430,7 +450,7 @@ class Law(Declared):
         return True
 
     def code(self, field: str) -> Sequence[tuple[float, float, float]]:
-        """The words that the core gets for an expression."""
+        """The code words of an expression for the core."""
         raise NotImplementedError
 
     def _repr_mimebundle_(self, **_: Any) -> dict[str, Any]:
@@ -468,7 +488,7 @@ class Segment(NamedTuple):
 
 
 class Sampling(NamedTuple):
-    """A Python function of time and readings that sets a signal every period [s]."""
+    """A Python function of time and readings that sets a signal once every period [s]."""
 
     period: float
     function: Callable[[float, Mapping[str, float]], float]
@@ -498,7 +518,7 @@ class Signal(Declared):
         raise NotImplementedError
 
     def unit_problems(self, units: tuple[str, ...]) -> Found:  # noqa: ARG002, most need none
-        """What does not fit the units of the driven quantity, where the values say their own, as `problems` does."""
+        """Units of values that do not fit the driven quantity, as `problems`."""
         return []
 
     def repeats(self) -> float:
@@ -506,7 +526,7 @@ class Signal(Declared):
         return 0.0
 
     def sampling(self) -> Sampling | None:
-        """The controller that sets it in a run; None: its pieces say all."""
+        """The controller that sets it in a run; None: its pieces define it."""
         return None
 
     def _repr_mimebundle_(self, **_: Any) -> dict[str, Any]:

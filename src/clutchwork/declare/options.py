@@ -1,4 +1,4 @@
-"""How a run is done: tolerances, method, budgets and what is written down.
+"""How a run is computed: tolerances, method, budgets and output.
 
 The fields of `Options` are the table of all options. What checks them, the command line, [simulation] of a model file,
 `cw_set_option` of the compiled core, exported C and the page of options follow from it.
@@ -163,7 +163,7 @@ DEFAULTS = Options()
 
 
 def known(names: Iterable[str]) -> None:
-    """Refuse names that are not options: a UseError, a TypeError, with near matches."""
+    """Raises a UseError, a TypeError, for names that are not options, with near matches."""
     words = [*OPTIONS, "t_end", "options", "progress"]
     unknown = [name for name in names if name not in OPTIONS]
     if unknown:
@@ -193,6 +193,6 @@ def instants(times: Any) -> Any:
 
 
 def _told(name: str, row: Setting, value: object) -> str:
-    """What is wrong with the value of an option, empty when nothing is."""
+    """What is wrong with the value of an option, empty if nothing."""
     fault = row.fault(value)
     return f"{name} is {fault.value}: it {advised(fault.message, fault.remedy)}" if fault else ""

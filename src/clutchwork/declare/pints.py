@@ -1,4 +1,4 @@
-"""Quantities of pint, recognised without importing it: only who passes one needs that package."""
+"""Quantities of pint, recognised without importing it: only those who pass one need that package."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ BASES = {
 
 
 class Foreign(Exception):  # noqa: N818, it is caught where a message is made of it
-    """A quantity that no number in SI follows from."""
+    """A quantity that cannot be converted to SI."""
 
 
 def is_quantity(value: object) -> bool:
@@ -57,12 +57,12 @@ def magnitude(quantity: Any) -> Any:
 
 
 def is_difference(quantity: Any) -> bool:
-    """Whether it is a difference of temperatures in a unit that has another zero."""
+    """Whether it is a temperature difference in a unit with an offset zero."""
     return "delta_" in str(quantity.units)
 
 
 def has_other_zero(quantity: Any) -> bool:
-    """Whether it is a temperature in a unit with another zero than kelvin."""
+    """Whether it is a temperature in a unit with an offset zero."""
     return bool(_root(type(quantity)(0.0, quantity.units)).magnitude != 0.0)
 
 

@@ -1,4 +1,4 @@
-"""What is attached to the ports of an element, and the directions along which it acts."""
+"""Nodes at the ports of an element, and the directions along which it acts."""
 
 from __future__ import annotations
 
@@ -73,13 +73,13 @@ def directions(component: Component) -> tuple[Direction, ...]:
 
 @cache
 def _moving(cls: Any) -> tuple[str, str]:
-    """Names of the ports that the rate is counted of and from; the second is empty where there is none."""
+    """Names of the ports between which the rate is measured; the second is empty if there is none."""
     names = _names(cls, "port")
     return "follower" if "follower" in names else "shaft", "base" if "base" in names else ""
 
 
 def _domain(component: Component) -> Domain:
-    """Kind of motion of the first port that is not the housing, of those that are free in this."""
+    """Kind of motion of the first port that is not the housing, among those that may be on either kind of node."""
     joined = ports(component)
     order = [*reversed(_free(type(component))), *joined]
     return next((joined[name].domain for name in order if not joined[name].fixed), Domain.ROTATION)

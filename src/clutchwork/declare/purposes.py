@@ -1,4 +1,4 @@
-"""What components are for, found from their declarations: the groups of the reference."""
+"""Groups of the reference: what components are for, from their declarations."""
 
 from __future__ import annotations
 
@@ -45,7 +45,7 @@ def _of_element(cls: Any) -> str:
 
 
 def groups(*roles: Role) -> dict[str, dict[str, Any]]:
-    """Declarations by kind below what they are for, in the order of the reference."""
+    """Declarations by purpose and kind, in the order of the reference."""
     found: dict[str, dict[str, Any]] = {name: {} for name in (*ELEMENTS, *LAWS, *SIGNALS)}
     for role in roles:
         for kind, cls in REGISTRY[role].items():

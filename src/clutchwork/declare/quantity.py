@@ -25,7 +25,7 @@ def within(unit: str) -> str:
 
 
 class QuantityError(ClutchworkError, ValueError):
-    """A value that is not a quantity of the wanted unit."""
+    """A value that is not a quantity of the expected unit."""
 
     def __init__(self, message: str, value: str, remedy: str) -> None:
         self.message, self.value, self.remedy = message, value, remedy
@@ -115,7 +115,7 @@ def from_pint(quantity: Any, unit: str, others: tuple[str, ...] = (), *, differe
 def scale_to_si(
     given: Any, unit: str, others: tuple[str, ...] = (), whole: object = None, *, difference: bool = False
 ) -> Scale:
-    """What turns numbers in a given unit into the wanted one of SI; QuantityError, which shows the value, if nothing.
+    """Conversion from a given unit to the expected SI unit; QuantityError, which shows the value, if there is none.
 
     Parameters: others, further units that may be wanted; whole, the value as it was given; difference, whether numbers
     are differences, so that a unit with another zero is refused.
@@ -142,7 +142,7 @@ def _wanted(unit: str, others: tuple[str, ...]) -> str:
 
 
 def _refused(value: str, word: str, wanted: str, difference: bool) -> QuantityError:
-    """A temperature in degrees where a difference or something else is wanted."""
+    """A temperature in degrees where a difference or another quantity is expected."""
     if difference:
         remedy = "give it in [K]; a difference of 1 degC, or of 1.8 degF, is 1 K"
         return QuantityError(f"is in {word}, which has another zero, and a difference has none", value, remedy)
@@ -158,7 +158,7 @@ def factor_to_si(given: Any, unit: str, others: tuple[str, ...] = (), whole: obj
 
 
 def times(value: Any, scale: Scale) -> Any:
-    """A number in SI; true, false and what is not a number stay."""
+    """A number in SI; booleans and non-numbers stay as they are."""
     if isinstance(value, bool) or not isinstance(value, int | float):
         return value
     try:

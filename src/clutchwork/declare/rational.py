@@ -91,7 +91,7 @@ class Echelon:
             self._holders.setdefault(held, set()).update((column, *touched))
 
     def rest(self, row: Mapping[int, Fraction]) -> Row:
-        """What is left of a row when all solved columns have been replaced."""
+        """Remainder of a row after substituting all solved columns."""
         return self._replaced(row, {})[0]
 
     def _replaced(self, row: Mapping[int, Fraction], origin: Row) -> tuple[Row, Row]:
@@ -104,7 +104,7 @@ class Echelon:
 
 
 def eliminate(rows: Iterable[Mapping[int, Fraction]], order: Iterable[int], *, traced: bool = True) -> Echelon:
-    """Solve rows for the columns in the given order where they can be."""
+    """Solve rows for the columns in the given order, as far as possible."""
     echelon = Echelon(order, traced=traced)
     for row in rows:
         echelon.add(row)
@@ -112,7 +112,7 @@ def eliminate(rows: Iterable[Mapping[int, Fraction]], order: Iterable[int], *, t
 
 
 def smallest(rows: Sequence[Row], target: Row) -> list[int]:
-    """A smallest set of rows that the target is a sum of: drop every row that it does not need."""
+    """A minimal set of rows whose combination is the target: drops every row that is not needed."""
     columns = sorted({column for row in (*rows, target) for column in row})
     keep = list(range(len(rows)))
     for number in list(keep):

@@ -52,7 +52,7 @@ class Kinds(Mapping[str, Any]):
         return len(self._loaded)
 
     def loaded(self) -> tuple[Any, ...]:
-        """Those that were imported up to now."""
+        """Declarations imported so far."""
         return tuple(self._loaded.values())
 
     def add(self, kind: str, cls: Any) -> None:
@@ -67,7 +67,7 @@ _WANTED: list[Callable[[Any], None]] = []
 
 
 def with_each(function: Callable[[Any], None]) -> None:
-    """Let a function have each declaration when it is registered."""
+    """Call a function with each declaration as it is registered."""
     _WANTED.append(function)
 
 

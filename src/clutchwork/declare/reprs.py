@@ -1,4 +1,4 @@
-"""What `repr` says of what a model is made of: on one line, what it joins by name, values with units, no defaults."""
+"""One-line `repr` of the parts of a model: nodes by name, values with units, no defaults."""
 
 from __future__ import annotations
 
@@ -68,7 +68,7 @@ def _line(cls: str, thing: Any, parts: list[str]) -> str:
 
 
 def _is_default(value: Any, default: Any) -> bool:
-    """Whether nobody needs to read a value, because it is that of the declaration."""
+    """Whether a value need not be shown because it is the default."""
     if default is MISSING:
         return False
     return value is default or (type(value) is type(default) and isinstance(value, Real | str) and value == default)

@@ -92,7 +92,7 @@ class Spec:
         return " and ".join(f"{sign} {value:g}" for sign, value in signs if value is not None)
 
     def allows(self, value: float) -> bool:
-        """Whether a finite number keeps the bound."""
+        """Whether a finite number is within the bound."""
         return (
             (self.above is None or value > self.above)
             and (self.at_least is None or value >= self.at_least)
@@ -102,7 +102,7 @@ class Spec:
 
     @property
     def ends(self) -> tuple[float, float]:
-        """The least and the largest number that keep the bound, infinite where there is none."""
+        """The smallest and the largest number within the bound, infinite where there is none."""
         lower = [-inf if self.above is None else nextafter(self.above, inf)]
         upper = [inf if self.below is None else nextafter(self.below, -inf)]
         lower += [] if self.at_least is None else [self.at_least]
@@ -111,7 +111,7 @@ class Spec:
 
 
 def common_ends(found: Iterable[Spec]) -> tuple[float, float]:
-    """The least and the largest number that all of them allow."""
+    """The smallest and the largest number that all of them allow."""
     lower, upper = zip(*(spec.ends for spec in found), strict=True)
     return max(lower), min(upper)
 
@@ -258,7 +258,7 @@ def signal(
 
 
 def formula(doc: str, *, default: None = MISSING, kw_only: bool = True, example: Any = None) -> Any:  # type: ignore[assignment]
-    """An expression, or several by name: a `Curve` of the C++ `Params` with the words that the law makes of it."""
+    """An expression, or several by name: a `Curve` of the C++ `Params` with the code words of the law."""
     return _field(Spec("formula", "1", doc, default is None, example=example), default, kw_only)
 
 
@@ -280,7 +280,7 @@ def option(
     last: int = 0,
     example: float | None = None,
 ) -> Any:
-    """A setting that the assembly reads and the equations do not: no part of the C++ `Params`."""
+    """A setting that only the assembly reads: it is not part of the C++ `Params`."""
     bounds = (above, at_least, None, at_most)
     spec = Spec("option", unit, doc, default is None, *bounds, units=units, flag=flag, last=last, example=example)
     return _field(spec, default)
@@ -314,7 +314,7 @@ def elements(doc: str) -> Any:
 
 
 def data(doc: str, *, example: Any = None) -> Any:
-    """What a composite is built by: an object, a name, the path of a TOML or JSON file, or the content of one."""
+    """What a composite is built from: an object, a name, the path of a TOML or JSON file, or the content of one."""
     return _field(Spec("data", "", doc, example=example), MISSING)
 
 
@@ -341,7 +341,7 @@ def _check_work(cls: Any) -> None:
     field_specifiers=(port, param, flag, choice, curve, numbers, formula, signal, law, option),
 )
 def family(cls: C) -> C:
-    """Freeze fields that several declarations share, as a base that is itself none."""
+    """Freeze fields that several declarations share, as a base class that is not a declaration itself."""
     frozen: Any = dataclass(frozen=True, repr=False)(cls)
     return frozen  # type: ignore[no-any-return]
 
@@ -414,7 +414,7 @@ Inputs: TypeAlias = "tuple[tuple[tuple[str, ...], Spec], ...]"
 
 
 def specs(cls: type, *what: str) -> Declared:
-    """The declared fields of a component, in order; optionally only some sorts."""
+    """The declared fields of a component, in order; optionally only of some sorts."""
     return _specs(cls, what)
 
 
@@ -449,7 +449,7 @@ COMPILED_ROLES = (Role.TORQUE, Role.CONTACT, Role.LAW, Role.FLOW, Role.PROCESS)
 
 
 def schema_text() -> str:
-    """All that the compiled core must agree on, as a string."""
+    """Everything that the compiled core must agree on, as a string."""
     return "\n".join(compiled_text(cls) for role in COMPILED_ROLES for cls in REGISTRY[role].values())
 
 
@@ -459,7 +459,8 @@ def compiled_text(cls: Any) -> str:
     sort = "" if cls.role is not Role.LAW else " sticks" if cls.sticks else " compliant"
     ways = "".join(f" {way.name}" for way in cls.ways) if len(cls.ways) > 1 else ""
     gathers = " gathers" if getattr(cls, "gathers", False) else ""
-    return f"{cls.role.value} {cls.kind} {names} {len(cls.states)}{sort}{ways}{gathers}"
+    code = "".join(f" {word}" for word in getattr(cls, "code_words", ()))
+    return f"{cls.role.value} {cls.kind} {names} {len(cls.states)}{sort}{ways}{gathers}{code}"
 
 
 def _field_text(name: str, spec: Spec) -> str:

@@ -38,7 +38,7 @@ class Setting:
 
     @property
     def least(self) -> float:
-        """The smallest number that is allowed; a flag is 0 or 1, a word its place."""
+        """The smallest number that is allowed; a flag is 0 or 1, a word its index."""
         if self.spec.above is not None:
             return max(LEAST, math.nextafter(self.spec.above, math.inf))
         return float(self.spec.at_least or 0.0)
@@ -61,13 +61,13 @@ class Setting:
         return "" if self.spec.unit in ("", "1") else f" {self.spec.unit}"
 
     def number(self, value: Any) -> float:
-        """A value without fault as the number of the core."""
+        """A valid value as the number that the core takes."""
         if value is None:
             return self.unset
         return float(self.spec.choices.index(value) if self.spec.choices else value)
 
     def in_si(self, value: Any) -> Any:
-        """A value in SI where it has a unit that fits; any other as it is."""
+        """A value in SI if it has a unit that fits; any other unchanged."""
         spec = self.spec
         if type(value) is float or spec.flag or spec.choices or spec.whole:
             return value
@@ -102,7 +102,7 @@ class Setting:
         )
 
     def _wrong(self, number: float | None) -> str:
-        """What a number must be, empty when it is that."""
+        """The bound that a number violates, empty if none."""
         spec = self.spec
         if spec.whole and (number is None or math.isnan(number) or (math.isfinite(number) and number % 1.0)):
             return "must be a whole number"

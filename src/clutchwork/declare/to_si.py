@@ -65,7 +65,7 @@ def field_in_si(value: Any, spec: Spec, driven: TargetUnit | None = None) -> Any
 
 
 def points_in_si(value: Any, x: TargetUnit, y: TargetUnit, *, constant: bool = False) -> Any:
-    """Pairs with both parts in SI, or with `constant` one number; what is neither stays for the checks."""
+    """Pairs with both parts in SI, or with `constant` one number; anything else stays for the checks."""
     if has_unit(value) or isinstance(value, int | float):
         return y.number(value) if constant else value
     if not _is_list(value) or (x.scale is PLAIN and y.scale is PLAIN and _all_plain(value)):
@@ -130,7 +130,7 @@ PARTNERS = {
 
 
 def settled(name: str, spec: Spec, cls: Any, values: Mapping[str, Any]) -> Spec:
-    """The spec of a field with only the units that fit the others: what it joins, and for a gain what that multiplies.
+    """The spec of a field with only the units that fit its nodes, and for a gain the signal it multiplies.
 
     Parameters: values of the fields that are given, nodes at its ports.
     """
@@ -168,7 +168,7 @@ def _specs(cls: Any) -> tuple[tuple[str, Spec], ...]:
 
 
 def accept(thing: Any) -> None:
-    """Put the values of a declared object that was just made into SI, as far as they can be read."""
+    """Convert the values of a new declared object to SI, as far as they can be read."""
     cls: Any = type(thing)
     values = vars(thing)
     for name, spec in _specs(cls):
@@ -195,7 +195,7 @@ def _tables(cls: Any) -> tuple[tuple[str, Spec], ...]:
 
 
 def table_in_si(value: Any, spec: Spec) -> Any:
-    """A table that never changes any more, its numbers in SI; a path as a string, anything else as it is."""
+    """A frozen table with its numbers in SI; a path as a string, anything else unchanged."""
     if spec.what == "data" and hasattr(value, "__fspath__"):
         return value.__fspath__()
     if spec.what != "named" or not hasattr(value, "items"):
@@ -213,7 +213,7 @@ def _in_units_of_its_own(value: Any, spec: Spec) -> bool:
 
 
 def driving(signal: Any, unit: str, others: tuple[str, ...] = ()) -> Any:
-    """A signal whose values with units are in that of what it drives; anything else as it is."""
+    """A signal whose values with units are converted to that of what it drives; anything else unchanged."""
     if not getattr(signal, "has_units", False):
         return signal
     driven = TargetUnit(unit, others)

@@ -31,9 +31,9 @@ class UnitRow(NamedTuple):
 
 @cache
 def unit_table() -> tuple[UnitRow, ...]:
-    """All words for units and what is often made of them, by quantity.
+    """All words for units and their usual combinations, by quantity.
 
-    Words are put together with blanks, powers and one slash: "kg cm2", "N m s/rad", "kJ/(kg K)".
+    Words are combined with blanks, powers and one slash: "kg cm2", "N m s/rad", "kJ/(kg K)".
     """
     found = []
     for quantity in QUANTITIES:
@@ -66,7 +66,7 @@ def _measures(name: str, quantity: UnitGroup) -> bool:
 
 
 def example_of(unit: str) -> str:
-    """A value as a string in a unit that fits one of SI, such as "2 bar" for Pa."""
+    """A value as a string in a unit compatible with an SI unit, such as "2 bar" for Pa."""
     exact = next((quantity for quantity in QUANTITIES if quantity.unit == unit), None)
     found = exact or next((one for one in QUANTITIES if powers_of(one.unit) == powers_of(unit)), None)
     return found.examples[0] if found else f"1.5 {unit}"

@@ -79,7 +79,7 @@ TABLE: dict[str, tuple[float, Powers]] = {
 
 
 class Offset(NamedTuple):
-    """A temperature with another zero than kelvin: `number * factor + zero` is in K."""
+    """A temperature with an offset zero: `number * factor + zero` is in K."""
 
     factor: float
     zero: float

@@ -1,6 +1,6 @@
 """Units at the border: text such as "0.2 kg m2" or "30 bar" becomes a number in SI.
 
-Nothing behind the border knows any other unit than SI. `declare.unit_words` lists the words.
+Behind the border there is only SI. `declare.unit_words` lists the words.
 """
 
 from __future__ import annotations
@@ -34,7 +34,7 @@ class Unit(NamedTuple):
 
 
 class Scale(NamedTuple):
-    """What makes a number in a unit one in SI: `number * factor + zero`."""
+    """Conversion to SI: `number * factor + zero`."""
 
     factor: float
     zero: float = 0.0
@@ -92,10 +92,10 @@ def powers_of(text: str) -> tuple[int, ...]:
 
 
 def scale(text: str, wanted: tuple[str, ...], *, difference: bool = False) -> Scale | None:
-    """What turns a number in a unit into one in one of those wanted; None where it fits none of them.
+    """Conversion from a unit to one of the expected units; None if it fits none of them.
 
-    ValueError names the part that is not known. Parameters: difference, whether the number is a difference, which has
-    no other zero.
+    ValueError names the part that is not known. Parameters: difference, whether the number is a difference, to which no
+    offset applies.
     """
     plain = _plain(text)
     powers = {powers_of(unit) for unit in wanted}
@@ -107,19 +107,19 @@ def scale(text: str, wanted: tuple[str, ...], *, difference: bool = False) -> Sc
 
 
 def other_zero(text: str) -> str:
-    """The unit of temperature with another zero than kelvin that a word means; empty where it means none."""
+    """The unit of temperature with an offset zero that a word means; empty if none."""
     word = _plain(text).strip()
     word = TOLERANT.get(word.lower(), word)
     return word if word in OTHER_ZERO else ""
 
 
 def turns(text: str) -> bool:
-    """Whether a unit is 1/min, which of what turns are revolutions."""
+    """Whether a unit is 1/min, which for rotation means revolutions."""
     return _TURNS.fullmatch(_plain(text).strip()) is not None
 
 
 def _readings(text: str) -> list[Unit]:
-    """What a unit may mean: a lb may be the force of one, and 1/min that of what turns."""
+    """Possible meanings of a unit: lb may be a force, 1/min a speed of rotation."""
     found = [_parsed(text)]
     if re.search(r"\blb\b", text):
         found.append(_parsed(re.sub(r"\blb\b", "lbf", text)))

@@ -1,4 +1,4 @@
-"""Whose words messages use: those of Python, or those of a model file."""
+"""Which terms messages use: those of Python, or those of a model file."""
 
 from __future__ import annotations
 
@@ -33,7 +33,7 @@ def say(in_files: str, in_python: str) -> str:
 
 
 def where_signals() -> str:
-    """Where the names of all signals of a run stand."""
+    """Where to find the names of all signals of a run."""
     return say("clutchwork check MODEL --signals lists all signals", "`run.names` lists all signals")
 
 
@@ -43,7 +43,7 @@ def path_of(component: Any) -> str:
 
 
 def element_path(name: object, cls: Any) -> str:
-    """Path of an element of a name and a class."""
+    """Path of an element by its name and class."""
     return say(f'element "{name}" ({cls.kind})', f'cw.{cls.__name__}("{name}")')
 
 

@@ -22,11 +22,11 @@ EXPONENT, RATE = 1.2, 5e9
     hooks=("margin", "cross"),
 )
 class Accumulator(Component):
-    """Oil that a gas or a spring keeps under pressure; what has it as a port fills and empties it, as an `OilVolume`.
+    """Oil under the pressure of a gas or a spring; elements with it at a port fill and empty it, as an `OilVolume`.
 
     Below `precharge` it is empty. Above it a gas is compressed from `capacity` on, with `pressure volume^exponent`
-    constant at absolute pressures; a spring gives way by a volume in proportion to the pressure, until it is full. The
-    oil of `volume` is there always, so that the pressure has a rate where it is empty or full.
+    constant at absolute pressures; a spring yields in proportion to the pressure, until it is full. The oil of `volume`
+    is always there, so that the pressure has a finite rate when it is empty or full.
 
     Source: H. E. Merritt, Hydraulic Control Systems, Wiley 1967; H. Murrenhoff, Grundlagen der Fluidtechnik 1, 2016.
     """

@@ -13,10 +13,10 @@ from clutchwork.elements.bases.stop import Stop
 class Backlash(Stop):
     """Play between rigid flanks: free inside the gap, impacts and any pushing torque at its ends.
 
-    Use it for gears, splines and couplings whose flanks are stiff against everything else; `ElasticBacklash` has
-    elastic ones. The twist is at most half the gap in both directions. Where a flank is met at the speed s it is left
-    at `restitution` s, in one impact of all contacts that are closed; below `rest_speed` it holds, until its torque
-    would pull.
+    Use it for gears, splines and couplings whose flanks are much stiffer than everything else; `ElasticBacklash` has
+    elastic ones. The twist is at most half the gap in both directions. A flank hit at the speed s is left at
+    `restitution` s, in one impact of all contacts that are closed; below `rest_speed` it holds, until its torque would
+    pull.
 
     Source of the impact law: J. J. Moreau 1988, doi:10.1007/978-3-7091-2624-0_1.
     """

@@ -10,7 +10,7 @@ from clutchwork.elements.bases.contacts import Contact
 
 @component(Role.CONTACT, hooks=("gain",))
 class BandBrake(Contact):
-    """Band around a drum, pulled at one end and fixed at the other: it energises itself in one direction.
+    """Band around a drum, pulled at one end and fixed at the other: self-energising in one direction.
 
     The torque is `force radius (exp(coefficient wrap) - 1)` where the drum pulls the band on, forward slip unless
     `reversed`, and `force radius (1 - exp(-coefficient wrap))` where it pulls it off. Use it for the bands of planetary

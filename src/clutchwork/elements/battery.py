@@ -15,7 +15,7 @@ NO_LIMIT = 1e15
 
 
 class BatteryAnswer(NamedTuple):
-    """What a battery does where a power is asked for: current [A], voltage [V], loss [W], and what it gives [W]."""
+    """State of a battery under a power demand: current [A], voltage [V], loss [W], power delivered [W]."""
 
     current: float
     voltage: float
@@ -29,7 +29,7 @@ class BatteryAnswer(NamedTuple):
         State("charge", "1", "what is in it, over its capacity"),
         State("energy", "J", "taken out of its cells since the start, at their open-circuit voltage"),
         State("loss", "J", "heat of its resistance since the start"),
-        State("unserved", "J", "asked for and not given since the start, beyond its limits"),
+        State("unserved", "J", "demanded and not given since the start, beyond its limits"),
         State("refused", "J", "offered and not taken since the start, beyond its limits"),
     ),
     hooks=("margin", "cross"),
@@ -37,11 +37,11 @@ class BatteryAnswer(NamedTuple):
 class Battery(Component):
     """Battery on a DC link: open-circuit voltage and resistance over its charge, limits, energies that close.
 
-    The DC link sums what is asked for, up to four loads: `cw.SupplyPower(motor)` of an electric motor, work and losses,
-    negative where it charges; a signal or a number for other consumers. The current follows from
-    `voltage current - resistance current^2 = power`. Use it in hybrids and electric vehicles. Controllers read its
-    charge as a signal of the run and ask `limits`; what motors take beyond these, or out of an empty battery, is
-    counted as `unserved`, what they return beyond them, or into a full one, as `refused`, so that
+    The DC link sums the demand of up to four loads: `cw.SupplyPower(motor)` of an electric motor, work and losses,
+    negative where it charges; a signal or a number for other consumers. The current follows from `voltage current -
+    resistance current^2 = power`. Use it in hybrids and electric vehicles. Controllers read its charge as a signal of
+    the run and ask `limits`; energy that motors demand beyond these, or from an empty battery, is counted as
+    `unserved`, what they return beyond them, or into a full one, as `refused`, so that
     `sum of loads = energy - loss + unserved - refused` always holds.
 
     Source: L. Guzzella, A. Sciarretta, Vehicle Propulsion Systems, 3rd ed., Springer 2013, section 4.5.
@@ -111,7 +111,7 @@ class Battery(Component):
         return low, high
 
     def answer(self, charge: float, power: float) -> BatteryAnswer:
-        """What it does at a charge where a power [W] is asked for: equation (10) of docs/theory/sources.md."""
+        """Its response at a charge to a power demand [W]: equation (10) of docs/theory/sources.md."""
         voltage, resistance = self.voltage(charge), self.resistance(charge)
         asked = min(power, voltage**2 / (4.0 * resistance)) if resistance else power
         root = max(voltage**2 - 4.0 * resistance * asked, 0.0) ** 0.5

@@ -11,7 +11,7 @@ from clutchwork.laws.coulomb import Coulomb
 
 @component(Role.CONTACT, hooks=("gain",))
 class BeltContact(Sticking):
-    """Contact whose load is a tension less the centrifugal force of a belt, times a factor for either way of slip.
+    """Contact whose load is a tension minus the centrifugal force of a belt, times a factor for each direction of slip.
 
     It holds and slips with `forward` or `backward` times (tension - mass_per_length speed^2), and with nothing where
     that is not above zero. `BeltDrive` has one, with the factors of Eytelwein; use it alone for ropes around drums and

@@ -35,10 +35,10 @@ class BeltDrive(Sticking):
     """Flat or V-belt between two pulleys: a rigid ratio up to the limit of Eytelwein, then slip with that force.
 
     The slip is that of the circumferences, radius_follower w_follower - radius_base w_base, with a plus where the belt
-    is crossed. Its force is at most 2 (preload - m v^2) tanh(mu wrap/2), wrap that of the smaller pulley, m v^2 the
-    centrifugal force at the speed of the pulley with the larger wrap: then the tensions of both strands, less m v^2,
-    are as exp(mu wrap). With a `tensioner` in place of the preload one strand has a constant tension, and the limit is
-    another for either direction. Where m v^2 reaches the tension the belt has no grip. A groove makes mu of it:
+    is crossed. Its force is at most 2 (preload - m v^2) tanh(mu wrap/2), with the wrap of the smaller pulley, m v^2 the
+    centrifugal force at the speed of the pulley with the larger wrap: then the tensions of both strands, minus m v^2,
+    have the ratio exp(mu wrap). With a `tensioner` in place of the preload one strand has a constant tension, and the
+    limit differs between the two directions. When m v^2 reaches the tension the belt has no grip. With a groove mu is
     `friction_coefficient`/sin(groove_angle/2). Use it for accessory drives and machines; a toothed belt is a `Chain`.
 
     Its parts "base_rim" and "follower_rim" are the circumferences of the pulleys.

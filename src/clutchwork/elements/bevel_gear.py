@@ -12,11 +12,11 @@ from clutchwork.elements.bases.teeth import ratio_of, ratio_problems
 class BevelGear(Component):
     """Bevel wheels at a right angle: input - support = ratio output.
 
-    Use it where the axis of the output stands across that of the input: a mitre box, the final drive of an axle, one
-    mesh of a differential. The speed of the output is that about its own axis, in its bearings; a support that turns
-    about the axis of the input, such as the cage of a differential, takes these along and has the torque -input.
-    Give the ratio, or the teeth of both wheels. Which way of the output counts positive is yours to choose: a negative
-    ratio takes the other one.
+    Use it where the axes of input and output cross at a right angle: a mitre box, the final drive of an axle, one mesh
+    of a differential. The speed of the output is that about its own axis, in its bearings; a support that turns about
+    the axis of the input, such as the cage of a differential, carries these bearings and has the torque -input. Give
+    the ratio, or the teeth of both wheels. The positive direction of the output is yours to choose: a negative ratio
+    reverses it.
     """
 
     input: Node = port("shaft whose speed is ratio times that of the output")

@@ -21,10 +21,10 @@ class Shoes(Flyweights):
 
 @component(Role.COMPOSITE)
 class CentrifugalClutch(Contact):
-    """Clutch whose shoes the speed of its base throws against a drum.
+    """Clutch whose shoes are thrown against a drum by the speed of its base.
 
     The capacity is `coefficient shoes drum_radius mass radius (speed^2 - onset^2)` above the speed `onset`; the shoes
-    follow the speed with a small lag. Use it for small engines, whose load it takes only above idle speed.
+    follow the speed with a small lag. Use it for small engines, which it couples to their load only above idle speed.
     """
 
     base: Node = port("shaft with the shoes, whose speed closes it")

@@ -18,11 +18,11 @@ from clutchwork.elements.polygon_sprocket import PolygonSprocket
 class Chain(Lossy):
     """Chain or toothed belt over two sprockets, which turn the same way: ratio = teeth_output/teeth_input.
 
-    Use it for bicycle, motorcycle, timing and transfer case drives. The mean ratio is exact; a chain that gives way is
-    a `SpringDamper` beside it. With `polygon` the strand moves with the corners of the sprockets, radius cos(angle in
-    the link), so that the ratio ripples with every tooth; links are then `pitch` long, and the phases say where in a
-    link each sprocket starts, -1 to 1. Losses follow the torque that the chain carries, as those of a `LossyGear`; it
-    has none by default, and a polygon has none.
+    Use it for bicycle, motorcycle, timing and transfer case drives. The mean ratio is exact; for an elastic chain put a
+    `SpringDamper` in series. With `polygon` the strand moves with the corners of the sprockets, radius cos(angle in the
+    link), so that the ratio ripples with every tooth; links are then `pitch` long, and the phases say where in a link
+    each sprocket starts, -1 to 1. Losses follow the torque that the chain carries, as those of a `LossyGear`; it has
+    none by default, and a polygon has none.
 
     Equations: docs/theory/belts.md.
     """

@@ -5,13 +5,13 @@ from __future__ import annotations
 from collections.abc import Sequence
 from math import sqrt
 
-from clutchwork.declare import Component, Found, Role, SignalLike, State, component, option, param, signal
+from clutchwork.declare import Component, Found, Role, SignalLike, State, StateSum, component, option, param, signal
 
 
 @component(
     Role.PROCESS,
     states=(
-        State("force", "N", "force on the plates; below zero: `contact_rate` times the way left to the kiss point"),
+        State("force", "N", "force on the plates; below zero: `contact_rate` times the stroke left to the kiss point"),
         State("pressure", "Pa", "pressure on the piston"),
         State("loss", "J", "heat of its orifice and its seal since the start"),
     ),
@@ -20,11 +20,11 @@ from clutchwork.declare import Component, Found, Role, SignalLike, State, compon
 class ClutchActuator(Component):
     """Piston that a supply fills through an orifice against its return spring, until it meets the plates.
 
-    Use it as the `normal_force` of a contact. With `u` the supply less the pressure, the flow is
-    `discharge area sqrt(2/density) u/(u^2 + laminar_pressure^2)^(1/4)`. The pressure balances `preload`, `spring_rate`
-    times the stroke and, beyond `kiss_stroke`, `contact_rate` times the rest, which is the force on the plates. Before
-    this kiss point there is none. `seal_friction` holds the piston where it is. Oil in `volume` is compressed. At its
-    stop the piston rests while the pressure is below the preload.
+    Use it as the `normal_force` of a contact. With `u` the supply minus the pressure, the flow is `discharge area
+    sqrt(2/density) u/(u^2 + laminar_pressure^2)^(1/4)`. The pressure balances `preload`, `spring_rate` times the stroke
+    and, beyond `kiss_stroke`, `contact_rate` times the remaining stroke, which is the force on the plates. Before this
+    kiss point there is none. `seal_friction` can hold the piston in place. Oil in `volume` is compressed. At its stop
+    the piston rests while the pressure is below the preload.
 
     A measured step response gives the values, the kiss pressure those of the springs, the fill time the orifice and the
     slope the contact rate: `clutchwork.fit.fit_response`.
@@ -45,7 +45,7 @@ class ClutchActuator(Component):
     laminar_pressure: float = param(
         "Pa", "pressure difference below which the flow is laminar, 0: never", default=1e3, at_least=0.0, example=2e4
     )
-    volume: float = param("m3", "oil that is compressed", default=0.0, at_least=0.0)
+    volume: float = param("m3", "compressed volume of oil", default=0.0, at_least=0.0)
     bulk_modulus: float = param("Pa", "bulk modulus of the oil", default=1.4e9, above=0.0)
     initial_stroke: float = option("m", "stroke at the start", default=0.0, at_least=0.0)
     initial_pressure: float = option("Pa", "pressure at the start, at the stop", default=0.0, at_least=0.0)
@@ -75,6 +75,10 @@ class ClutchActuator(Component):
         springs = self.preload + self.spring_rate * self.initial_stroke + self.contact_rate * max(beyond, 0.0)
         pressure = springs / self.piston_area if self.initial_stroke else self.initial_pressure
         return (self.contact_rate * beyond, pressure, 0.0)
+
+    def state_sums(self) -> tuple[StateSum, ...]:
+        """The stroke, from the force on the plates or the way that is left to them."""
+        return (StateSum("stroke", "m", {"force": 1.0 / self.contact_rate}, self.kiss_stroke),)
 
     def stored(self, states: Sequence[float], torque: float = 0.0) -> float:  # noqa: ARG002, a piston has none
         """Energy [J] of its springs, the plates and the compressed oil, by its states."""

@@ -7,7 +7,7 @@ from clutchwork.declare import Component, Role, ThermalNode, component, param, p
 
 @component(Role.FLOW)
 class Conduction(Component):
-    """Heat flow `conductance * (temperature of hot - temperature of cold)`, backward where cold is the warmer one.
+    """Heat flow `conductance * (temperature of hot - temperature of cold)`, reversed when cold is the warmer one.
 
     Use it for heat through a wall, a joint or a film, where the conductance area * conductivity / thickness is
     known. For one that grows with a speed take `Convection`, for the inside of a plate `ThermalPlate`.

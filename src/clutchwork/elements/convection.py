@@ -9,7 +9,7 @@ from clutchwork.declare import Component, Points, Role, SignalLike, ThermalNode,
 class Convection(Component):
     """Heat flow `conductance * (temperature of hot - temperature of cold)`, its conductance a table over abs(speed).
 
-    Use it for a drum or a clutch cover that cools the better the faster it turns. Beyond the ends of the table the
+    Use it for a drum or a clutch cover that cools better the faster it turns. Beyond the ends of the table the
     conductance stays at its last value.
     """
 

@@ -1,4 +1,4 @@
-"""Diaphragm spring of a dry clutch, worked by a pedal."""
+"""Diaphragm spring of a dry clutch, operated by a pedal."""
 
 from __future__ import annotations
 
@@ -26,9 +26,9 @@ from clutchwork.signals.bases.waveform import value
 class DiaphragmSpring(Component):
     """Clamp force over the travel of the release bearing, as a table.
 
-    Use it as the `normal_force` of a dry clutch. The travel of the bearing is `ratio * travel - free_travel`, not
-    below zero: with the ratio of the linkage `travel` is that of the pedal. Wear of the linings takes the
-    fingers towards the bearing by `wear_ratio` times its depth. Beyond its ends the table keeps its values.
+    Use it as the `normal_force` of a dry clutch. The travel of the bearing is `ratio * travel - free_travel`, not below
+    zero: with the ratio of the linkage `travel` is that of the pedal. Wear of the linings moves the fingers towards the
+    bearing by `wear_ratio` times its depth. Beyond its ends the table keeps its values.
     """
 
     force: Points = curve(

@@ -11,8 +11,8 @@ from clutchwork.declare import Component, Node, Role, State, Work, component, op
 class Displacement(Component):
     """Angle or distance between two members, integrated with the motion; it has no torque.
 
-    Use it where a twist or a gap must be known to the tolerances of the run, and not as the difference of two angles
-    that have grown large. Stops measure their gap with one of their own.
+    Use it where a twist or a gap must be accurate to the tolerances of the run, rather than the difference of two large
+    angles. Stops have their own.
     """
 
     work: ClassVar[Work] = Work.STORE

@@ -19,12 +19,12 @@ from clutchwork.elements.bases.heating import Heating
     hooks=("margin", "cross", "turns", "settle", "heat", "freed"),
 )
 class DogClutch(Heating):
-    """Teeth that mesh only when tooth faces gap and the slip is below `speed`; then they hold any torque.
+    """Teeth that engage only when tooth faces gap and the slip is below `speed`; then they carry any torque.
 
-    The sleeve follows the command with a time constant and meets the tips at `reach`. Where tooth stands on tooth or
-    the slip is too high it is blocked there, until both fit or the command goes back. In mesh the flanks have play over
-    `gap` and press with `stiffness depth (1 + damping closing speed)`, never pulling. Use it for shift sleeves, parking
-    locks and range clutches. Pointed teeth find their gap from any angle.
+    The sleeve follows the command with a time constant and meets the tips at `reach`. With tooth on tooth or at too
+    high a slip it is blocked there, until both fit or the command is withdrawn. In mesh the flanks have play over `gap`
+    and press with `stiffness depth (1 + damping closing speed)`, never pulling. Use it for shift sleeves, parking locks
+    and range clutches. Pointed teeth find their gap from any angle.
 
     Source of the damping: K. H. Hunt, F. R. E. Crossley 1975, doi:10.1115/1.3423596.
     """
@@ -43,7 +43,7 @@ class DogClutch(Heating):
     lag: float = param("s", "time constant of the sleeve", default=0.02, above=0.0)
     pointed: bool = flag("pointed teeth, which are guided into their gap", default=False)
     reversed: bool = flag("a negative command closes it", default=False)
-    command: SignalLike = signal("1", "wanted position of the sleeve, 0 out, 1 in")
+    command: SignalLike = signal("1", "commanded position of the sleeve, 0 out, 1 in")
     initial_angle: float = option("rad", "angle at the start, 0 in the middle of a gap", default=0.0)
     engaged: bool = option("1", "in mesh at the start, at any slip", default=False, flag=True)
 

@@ -12,8 +12,8 @@ from clutchwork.elements.bases.teeth import PlanetarySet
 class DoublePlanetary(PlanetarySet):
     """Planetary gear with pairs of meshing planets: ratio ring - sun = (ratio - 1) carrier.
 
-    Use it for a double-pinion set, where sun and ring turn the same way when the carrier stands: one half of a
-    Ravigneaux set. Give the ratio teeth_ring/teeth_sun, or both numbers of teeth.
+    Use it for a double-pinion set, where sun and ring turn in the same direction when the carrier is held: one half of
+    a Ravigneaux set. Give the ratio teeth_ring/teeth_sun, or both numbers of teeth.
     """
 
     ratio: float | None = param("1", "teeth of the ring over teeth of the sun", default=None, above=1.0)

@@ -18,9 +18,9 @@ class Driver(Component):
     """Driver who follows a speed cycle: a controller with proportional and integral part on two pedals.
 
     With the error `e = cycle - speed`, `gain e + integral` above zero is the accelerator, below zero the brake, each up
-    to 1, followed with the time constant `lag` of the foot. `d integral/dt = integral_gain e` stays within -1 and 1: it
-    is held there while the error points outwards, and leaves at once when that turns. Give the driver itself as a
-    throttle and `(driver, "brake")` as the force of a brake.
+    to 1, with the time constant `lag` of the foot. `d integral/dt = integral_gain e` stays within -1 and 1: it is held
+    there while the error points outwards, and leaves at once when the error reverses (anti-windup). Give the driver
+    itself as a throttle and `(driver, "brake")` as the force of a brake.
 
     Source: K. J. Åström, T. Hägglund, PID Controllers, 2nd ed., ISA 1995, section 3.5.
     """

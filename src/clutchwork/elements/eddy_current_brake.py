@@ -11,7 +11,7 @@ from clutchwork.signals.bases.extremes import extremes
 
 @component(Role.TORQUE)
 class EddyCurrentBrake(Heating):
-    """Brake `-2 nominal_torque x/(1 + x^2)`, x = speed/nominal_speed: it peaks there, falls beyond and holds nothing.
+    """Brake `-2 nominal_torque x/(1 + x^2)`, x = speed/nominal_speed: with a peak there and no torque at rest.
 
     Use it for magnetic brakes, eddy-current retarders and dynamometers. As its conductor warms, its resistance rises:
     the peak moves up to `nominal_speed (1 + temperature_coefficient (temperature - reference_temperature))`. The

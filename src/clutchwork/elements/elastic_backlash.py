@@ -19,9 +19,8 @@ class ElasticBacklash(Heating):
 
     Use it for gears, splines, couplings and joints whose flanks are elastic; `Backlash` has rigid ones. Beyond half the
     gap the torque on the follower is -(stiffness depth + damping rate), as long as that pushes: flanks never pull.
-    `limited`: the damping is never above the torque of the spring, so the torque does not jump where the flanks
-    meet; otherwise it does. They are `ElastoBacklash` (limited) and `ElastoBacklash2` of the Modelica Standard
-    Library 4.0.
+    `limited`: the damping never exceeds the torque of the spring, so the torque does not jump at contact; otherwise it
+    does. They are `ElastoBacklash` (limited) and `ElastoBacklash2` of the Modelica Standard Library 4.0.
     """
 
     work: ClassVar[Work] = Work.STORE | Work.LOSS

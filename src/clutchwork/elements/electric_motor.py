@@ -34,11 +34,12 @@ NEAR_REST = 0.1
 class ElectricMotor(Heating):
     """Motor that follows a torque command within its envelope in all four quadrants, with its losses.
 
-    Use it for traction motors, starters, generators and servo drives. The command lags first and is clipped then, to
-    `max_torque` and `max_power` while it drives, to those of the generator while it brakes; at rest it holds no more
-    than it drives with. `electric_power` is what it draws, work and losses, and is negative where it charges. The
-    losses are a polynomial, plus a map, or follow from a map of efficiencies; tables over abs(speed) and abs(torque)
-    are held beyond their ends. They warm its `heat` node, or a `winding` of its own, whose temperature may derate it.
+    Use it for traction motors, starters, generators and servo drives. The command first passes the lag and is then
+    clipped, to `max_torque` and `max_power` while it drives, to those of the generator while it brakes; at rest it
+    holds no more than it drives with. `electric_power` is what it draws, work and losses, and is negative while it
+    charges. The losses are a polynomial, plus a map, or follow from a map of efficiencies; tables over abs(speed) and
+    abs(torque) are held beyond their ends. They warm its `heat` node, or a `winding` of its own, whose temperature may
+    derate it.
     """
 
     shaft: Node = port("shaft that a positive torque accelerates")
@@ -68,7 +69,7 @@ class ElectricMotor(Heating):
         "W", "largest power that brakes, as `max_power` by default", default=None, above=0.0
     )
     lag: float = param("s", "time constant of the command, 0: it acts at once", default=0.0, at_least=0.0)
-    initial_request: float = option("N m", "command that has come through at the start", default=0.0, units=("N",))
+    initial_request: float = option("N m", "lagged command at the start", default=0.0, units=("N",))
     no_load_loss: float = param("W", "constant loss", default=0.0, at_least=0.0)
     drag_loss: float = param("W s/rad", "loss over abs(speed)", default=0.0, at_least=0.0, units=("W s/m",))
     iron_loss: float = param("W s2/rad2", "loss over speed^2", default=0.0, at_least=0.0, units=("W s2/m2",))

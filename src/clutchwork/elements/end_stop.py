@@ -13,10 +13,10 @@ from clutchwork.elements.bases.stop import Stop
 
 @component(Role.CONTACT, hooks=("end", "restitution", "rest_speed"))
 class EndStop(Stop):
-    """Rigid stops at a lower and an upper end of a way: free between them, impacts and any pushing force at them.
+    """Rigid stops at the lower and the upper end of a travel: free between them, impacts and any pushing force at them.
 
     Use it for levers, pistons, slides, parking pawls and pedals, on shafts and on masses; one end may be left out.
-    Where an end is met at the speed s it is left at its restitution times s, in one impact of all contacts that are
+    An end hit at the speed s is left at its restitution times s, in one impact of all contacts that are
     closed; below `rest_speed` it holds, until its force would pull. Friction beside it is a `BearingFriction`: with a
     mass and both ends they are `MassWithStopAndFriction` of the Modelica Standard Library 4.0.
 

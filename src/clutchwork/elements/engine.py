@@ -35,11 +35,11 @@ class Engine(Component):
     """Engine by its full-load and motoring curves, or by a torque map over speed and throttle.
 
     Use it for any engine that drives a driveline. Its torque is `motoring + u (full_load - motoring)`, where u follows
-    the throttle with `lag`; an idle control with a projected integral raises it, a limiter lowers it. Boost builds in
-    `boost_lag`, the burning part may ripple over the crank angle. Nothing burns below `stall_speed` or backward: an
-    engine that stands burns if that is 0, and has to be started if it is above. At rest the motoring torque holds up to
-    its value there. A ripple that makes the burning part negative comes in over 1 rad/s above `stall_speed`. Tables are
-    held beyond their ends.
+    the throttle with `lag`; an idle control with a projected integral raises it, a limiter lowers it. Boost builds up
+    with `boost_lag`; the combustion torque may ripple over the crank angle. There is no combustion below `stall_speed`
+    or in reverse: an engine at rest fires if that is 0, and has to be started if it is above 0. At rest the motoring
+    torque holds up to its value there. A ripple that makes the combustion torque negative fades in over 1 rad/s above
+    `stall_speed`. Tables are held beyond their ends.
 
     Source of the curves: Simscape Driveline, Generic Engine; VehicleInterfaces.Engines.
     """
@@ -91,8 +91,8 @@ class Engine(Component):
     )
     amplitudes: Sequence[float] | None = numbers("1", "amplitude of each over the burning part", default=None)
     phases: Sequence[float] | None = numbers("rad", "phase of each, none: 0", default=None)
-    stall_speed: float = param("rad/s", "speed below which nothing burns", default=0.0, at_least=0.0)
-    initial_throttle: float = option("1", "throttle that has come through at the start", default=0.0, at_least=0.0)
+    stall_speed: float = param("rad/s", "speed below which there is no combustion", default=0.0, at_least=0.0)
+    initial_throttle: float = option("1", "lagged throttle at the start", default=0.0, at_least=0.0)
     initial_idle: float = option("1", "integral of the idle control at the start", default=0.0, at_least=0.0)
     initial_boost: float = option("1", "share of the full boost at the start", default=0.0, at_least=0.0)
     initial_crank: float | None = option(
@@ -180,7 +180,7 @@ class Engine(Component):
             )
 
     def sums(self) -> tuple[str, ...]:
-        """What its torque, power and work hold besides those of the burning part."""
+        """What its torque, power and work contain besides those of combustion."""
         return ("drag",) if self.breakaway > 0.0 else ()
 
     def _grids(self) -> tuple[tuple[float, ...], tuple[float, ...], tuple[tuple[float, ...], ...], tuple[float, ...]]:

@@ -25,7 +25,7 @@ from clutchwork.elements.bases.grids import shape_problems
 from clutchwork.elements.bases.ratios import angle_of
 
 STATES = (
-    State("opening", "1", "throttle that has come through"),
+    State("opening", "1", "throttle behind its lag"),
     State("idle", "1", "integral of the idle control"),
     State("boost", "1", "share of the full boost"),
     State("crank", "rad", "crank angle"),
@@ -38,7 +38,7 @@ STATES = (
     hooks=("edges", "edge", "margin", "cross", "turns", "settle", "pace", "count", "fits"),
 )
 class EngineTorque(Component):
-    """Torque over speed and throttle with idle control, limiter, boost and ripple, less what it holds at rest.
+    """Torque over speed and throttle with idle control, limiter, boost and ripple, minus what it holds at rest.
 
     Use it to build engines of your own; `Engine` makes its grids from curves and adds a contact with the torque at
     rest, which is left out here. All tables hold over the one grid of abs(speed), and are held beyond it.
@@ -63,7 +63,7 @@ class EngineTorque(Component):
     deficit: Sequence[float] = numbers(
         "N m", "torque that full boost adds at full throttle, one for each speed", example=(0.0, 1.0, 2.0)
     )
-    stall_speed: float = param("rad/s", "speed below which nothing burns", default=0.0, at_least=0.0)
+    stall_speed: float = param("rad/s", "speed below which there is no combustion", default=0.0, at_least=0.0)
     lag: float = param(
         "s", "time constant of the throttle, 0: none", default=0.0, at_least=0.0, fixed=True, example=0.1
     )
@@ -84,7 +84,7 @@ class EngineTorque(Component):
     amplitudes: Sequence[float] = numbers("1", "amplitude of each over the burning part", example=(0.5,))
     phases: Sequence[float] = numbers("rad", "phase of each", example=(0.0,))
     throttle: SignalLike = signal("1", "throttle, 0 closed, 1 open")
-    initial_opening: float = option("1", "throttle that has come through at the start", default=0.0, at_least=0.0)
+    initial_opening: float = option("1", "lagged throttle at the start", default=0.0, at_least=0.0)
     initial_idle: float = option("1", "integral of the idle control at the start", default=0.0, at_least=0.0)
     initial_boost: float = option("1", "boost at the start", default=0.0, at_least=0.0)
     initial_crank: float | None = option(

@@ -7,16 +7,16 @@ from itertools import pairwise
 from math import inf, pi, sin, sqrt
 from typing import ClassVar
 
-from clutchwork.declare import Found, Node, Role, Way, component, param, port
-from clutchwork.declare.node import Part
+from clutchwork.declare import Found, Node, Role, StateSum, Way, component, param, port
+from clutchwork.declare.node import Domain, Part
 from clutchwork.elements.bases.heating import Heating
-from clutchwork.elements.bases.modal import Modal, frequencies
+from clutchwork.elements.bases.modal import Modal, frequencies, twist_of
 from clutchwork.elements.gear import Gear
 from clutchwork.elements.spring_damper import SpringDamper
 
 
 class Coordinate(SpringDamper):
-    """Spring and damper on the amplitude of a mode, which reacts on no member."""
+    """Spring and damper on the amplitude of a mode, without a reaction on any member."""
 
     ways: ClassVar[tuple[Way, ...]] = (Way("amplitude", "rate of the amplitude"),)
 
@@ -31,7 +31,7 @@ GEOMETRY = ("length", "outer_diameter")
 
 @component(Role.COMPOSITE)
 class FlexibleShaft(Heating):
-    """Shaft with inertia along its length: equal springs in a row, and inertias between them and at both ends.
+    """Shaft with distributed inertia: equal springs in series, with inertias between them and at both ends.
 
     Use it where torsional waves in a long shaft matter, and for its natural frequencies; a short shaft is a
     `SpringDamper`. Give stiffness and inertia, or the dimensions of a round bar or tube. Of `segments` springs each is
@@ -123,6 +123,16 @@ class FlexibleShaft(Heating):
             for fixed, ends in ((False, "free ends"), (True, "one end held"))
         ]
         return [f"natural frequencies {' and '.join(words)}"]
+
+    def state_sums(self) -> tuple[StateSum, ...]:
+        """The twist from end to end, the sum of those of its springs."""
+        unit = "rad" if (self.follower if self.base.fixed else self.base).domain is Domain.ROTATION else "m"
+        if self.modes is not None:
+            weights = twist_of(self.whole_stiffness, int(self.modes))
+        else:
+            each = 1.0 / (self._count * self.whole_stiffness)
+            weights = {f"segment_{number}.spring_torque": each for number in range(1, self._count + 1)}
+        return (StateSum("twist", unit, weights),)
 
     def parts(self) -> Iterator[Part]:
         """Shafts from end to end, the springs between them, and what ties the ends to theirs; or its modes."""

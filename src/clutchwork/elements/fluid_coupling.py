@@ -17,7 +17,7 @@ WAYS = (
 
 @component(Role.TORQUE, hooks=("margin", "cross", "turns", "settle", "fits"), ways=WAYS)
 class FluidCoupling(Heating):
-    """Hydrodynamic coupling: the faster shaft drags the slower one by k w^2, k over the ratio of the speeds.
+    """Hydrodynamic coupling: the faster shaft drags the slower one with k w^2, k over the ratio of the speeds.
 
     Use it where oil between two wheels starts a heavy load, without a stator in between; with one it is a
     `TorqueConverter`. The torque from the fast to the slow shaft is k(slow/fast) fast^2, in all quadrants;

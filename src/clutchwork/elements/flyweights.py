@@ -1,4 +1,4 @@
-"""Masses that a shaft throws outwards."""
+"""Flyweights on a shaft."""
 
 from __future__ import annotations
 

@@ -11,9 +11,9 @@ from clutchwork.laws.coulomb import Coulomb
 class FundamentalClutch(Sticking):
     """Clutch that slips with a given torque and holds between two given limits.
 
-    Use it where friction is computed elsewhere. It locks when the slip is within the tolerance and the torque that
-    it takes lies between `lower` and `upper`; it lets go when that leaves them. Torques are those on the follower: the
-    lower limit resists forward slip, the upper one backward slip; a limit below the kinetic torque counts as that.
+    Use it where friction is computed elsewhere. It locks when the slip is within the tolerance and the torque that it
+    takes lies between `lower` and `upper`; it releases when the torque leaves them. Torques are those on the follower:
+    the lower limit resists forward slip, the upper one backward slip; a limit below the kinetic torque counts as that.
     Where all are zero it is open.
     """
 

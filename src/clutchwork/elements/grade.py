@@ -10,7 +10,7 @@ from clutchwork.declare import Component, Node, Role, SignalLike, State, Work, c
 
 @component(Role.TORQUE, states=(State("height", "m", "height climbed since the start"),))
 class Grade(Component):
-    """Downhill force of a weight, `-weight sin(a)` with `a = atan(slope)`; what it lifts is stored.
+    """Downhill force of a weight, `-weight sin(a)` with `a = atan(slope)`; the work of lifting is stored.
 
     Use it for a vehicle on a grade; `Vehicle` holds one. The slope is a number, a signal or a `Road`.
     """
@@ -19,7 +19,7 @@ class Grade(Component):
 
     shaft: Node = port("mass that climbs", domain="translation")
     weight: float = param("N", "weight of all that climbs with it", above=0.0)
-    slope: SignalLike = signal("1", "rise over horizontal way, positive uphill", default=0.0, example=0.05)
+    slope: SignalLike = signal("1", "rise over horizontal distance, positive uphill", default=0.0, example=0.05)
 
     def initial_states(self) -> tuple[float, ...]:
         """Height at the start [m]."""

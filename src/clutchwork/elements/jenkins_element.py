@@ -35,10 +35,10 @@ class JenkinsElement(Heating):
     """Spring in series with dry friction: it twists up to the limit of the friction, then slides.
 
     Use several beside a spring for hysteresis with memory, as of arc springs and friction rings, whose loops close
-    whatever the rate. Where it sticks its torque changes with `stiffness` times the rate; at the limit it follows that,
-    exactly, until the rate turns. The limit is a number, or a table over the twist which is extended linearly, and
-    may grow with the square of a speed, as centrifugal force presses springs onto their guide. What such an element
-    has stored comes back.
+    whatever the rate. While it sticks its torque changes with `stiffness` times the rate; at the limit it follows the
+    limit exactly, until the rate reverses. The limit is a number, or a table over the twist which is extended linearly,
+    and may grow with the square of a speed, as centrifugal force presses springs onto their guide. Its stored energy is
+    recovered.
 
     Equations: docs/theory/compliance.md. Source: W. D. Iwan, A distributed-element model for hysteresis and its
     steady-state dynamic response, J. Appl. Mech. 33, 1966, doi:10.1115/1.3625199.

@@ -14,7 +14,7 @@ from clutchwork.elements.rack_mesh import RackMesh
 
 @component(Role.COMPOSITE)
 class Leadscrew(Sticking):
-    """Screw that moves a mass by its nut, with the friction of its thread; self-locking where its lead is small.
+    """Screw that moves a mass by its nut, with the friction of its thread; self-locking if its lead is small.
 
     Use it for lifting tables, presses and linear axes. One turn of the screw moves the mass by the lead. The lead angle
     is `atan(lead/(2 pi radius))`; efficiencies as of a `WormGear`.
@@ -40,7 +40,7 @@ class Leadscrew(Sticking):
         return atan(self.lead / (tau * self.radius))
 
     def parts(self) -> Iterable[Component]:
-        """The mesh of screw and nut with its friction."""
+        """The mesh of screw and nut with friction."""
         ahead, back = screw_efficiencies(self.lead_angle, self.friction_coefficient, self.normal_angle)
         ends: dict[str, Any] = {"shaft": self.screw, "mass": self.mass, "support": self.support}
         return (

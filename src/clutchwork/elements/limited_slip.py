@@ -12,7 +12,7 @@ from clutchwork.elements.bases.meshing import SLIP, Meshing
 
 @component(Role.CONTACT, hooks=("bound",), ways=SLIP)
 class LimitedSlip(Meshing):
-    """Differential whose sides are held together by `preload` and a share of the torque of its carrier.
+    """Differential whose sides are coupled by `preload` and a share of the torque of its carrier.
 
     It is the part of `Differential` that makes its friction; use that one. Slip is left - right, its torque is that
     on the left side.

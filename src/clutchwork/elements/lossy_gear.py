@@ -13,12 +13,12 @@ from clutchwork.elements.mesh import Mesh
 
 @component(Role.COMPOSITE)
 class LossyGear(WheelPair, Lossy):
-    """Gear with an efficiency for either direction of power, and friction; it sticks exactly, by load.
+    """Gear with an efficiency for each direction of power, and load-dependent friction that sticks exactly.
 
     Use it for spur, helical and bevel gears, chains and hypoid drives where losses count. With T the torque into the
     input, the output has `ratio (T - loss)`; the loss is `(1 - efficiency) T` where the input drives,
     `(1/backward - 1) |T|` where the output does, and anything in between at rest. A loss table gives both and a
-    friction torque over the speed of the input, linear between its rows and beyond, there until a loss would be a gain.
+    friction torque over the speed of the input, linear between its rows and beyond, as long as a loss stays a loss.
     The sign of T is an event, and so are the rows.
 
     Source: C. Pelchen, C. Schweiger, M. Otter, Modeling and simulating the efficiency of gearboxes and of planetary

@@ -13,7 +13,7 @@ from clutchwork.elements.mesh import Mesh
 
 @component(Role.COMPOSITE)
 class LossyPlanetary(PlanetarySet, Lossy):
-    """Planetary gear with losses in its meshes, which work relative to the carrier; it sticks exactly, by load.
+    """Planetary gear with losses in its meshes, relative to the carrier; their friction sticks exactly.
 
     Use it where the efficiency of a planetary set counts: it depends on which members drive, and is 1 where the set
     turns as a block. `efficiency` is the product of those of the meshes sun-planet and planet-ring where the sun drives

@@ -12,7 +12,7 @@ from clutchwork.elements.bases.meshing import SLIP, Meshing, table_problems
 
 @component(Role.CONTACT, hooks=("bound", "edges", "edge", "fits"), ways=SLIP)
 class Mesh(Meshing):
-    """Gear ratio with losses that follow the torque which it transmits: sticks exactly, by load.
+    """Gear ratio with losses that follow the transmitted torque, with load-dependent friction that sticks exactly.
 
     It is the part of `LossyGear`, `LossyPlanetary` and `WormGear` that makes their friction; use those, or this one
     in elements of your own.

@@ -13,8 +13,9 @@ class MotionSensor(Component):
     """Angle, speed and acceleration of one shaft against another, as signals of the run: follower - base.
 
     Use it for the twist of a whole line, the slip between shafts that nothing joins, or a relative angle that a file,
-    an exported model or a fit needs by name. It changes nothing: no torque, no step. At an event the signal has both
-    limits; the acceleration after it is the right one. The angle starts as the difference of the angles at the start.
+    an exported model or a fit needs by name. It has no effect on the motion or the steps. At an event the signal has
+    both limits; the acceleration after it is the right one. The angle starts as the difference of the angles at the
+    start.
     """
 
     reports: ClassVar[Mapping[str, str]] = {
@@ -24,5 +25,5 @@ class MotionSensor(Component):
         "acceleration": "the rate of that",
     }
 
-    base: Node | None = port("side that motion is counted from", default=None)
+    base: Node | None = port("side that motion is measured from", default=None)
     follower: Node = port("side whose motion counts positive")

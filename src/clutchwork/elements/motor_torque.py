@@ -27,7 +27,7 @@ from clutchwork.elements.bases.heating import Heating
 
 @component(
     Role.TORQUE,
-    states=(State("request", "N m", "command that has come through"),),
+    states=(State("request", "N m", "command behind its lag"),),
     hooks=("edges", "edge", "margin", "cross", "turns", "settle", "heat", "count", "fits"),
 )
 class MotorTorque(Heating):
@@ -82,7 +82,7 @@ class MotorTorque(Heating):
         "K", "temperature that derates it, that of its `heat` node by default", default=None, otherwise=293.15
     )
     lag: float = param("s", "time constant of the command, 0: none", default=0.0, at_least=0.0, fixed=True, example=0.1)
-    initial_request: float = option("N m", "command that has come through at the start", default=0.0, units=("N",))
+    initial_request: float = option("N m", "lagged command at the start", default=0.0, units=("N",))
 
     def problems(self) -> Found:
         rows, columns = len(self.speeds), len(self.torques)
@@ -104,7 +104,7 @@ class MotorTorque(Heating):
         return found
 
     def own_states(self) -> tuple[State, ...]:
-        """The command that has come through, where it lags."""
+        """The lagged command."""
         return self.states if self.lag > 0.0 else ()
 
     def initial_states(self) -> tuple[float, ...]:

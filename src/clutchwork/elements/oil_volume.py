@@ -20,10 +20,10 @@ BAR = 1e5
 class OilVolume(Component):
     """Oil in a line or behind a valve: its pressure follows the sum of all flows into it.
 
-    Whatever has it as a port puts oil in and takes it out: pumps, orifices, valves, pistons; there may be any number of
-    them. `d pressure/dt = flow bulk_modulus/volume`; air that is carried along makes it soft at low pressures, so that
-    none falls below vacuum. A number or a signal in place of a volume, as the port of a valve, is a fixed pressure,
-    such as that of a sump.
+    Any number of elements may have it at a port and exchange oil with it: pumps, orifices, valves, pistons. `d
+    pressure/dt = flow bulk_modulus/volume`; entrained air makes it soft at low pressures, so that the pressure never
+    falls below vacuum. A number or a signal in place of a volume, as the port of a valve, is a fixed pressure, such as
+    that of a sump.
 
     Equations: docs/theory/hydraulics.md. Source: H. E. Merritt, Hydraulic Control Systems, Wiley 1967, section 1-4.
     """

@@ -25,7 +25,7 @@ from clutchwork.laws.coulomb import Coulomb
 class OneWayClutch(Pressed):
     """Freewheel: the follower may run ahead of the base and never falls behind it.
 
-    Use it for sprags, roller clutches and ratchets. While locked it transmits any torque that would make the
+    Use it for sprag clutches, roller clutches and ratchets. While locked it transmits any torque that would make the
     slip negative. The friction clutch in parallel has the capacity `gain * pressure * coefficient`, none by default.
     """
 

@@ -10,11 +10,11 @@ from clutchwork.elements.bases.oil import Opening
     Role.PROCESS, states=(State("loss", "J", "heat of the oil that went through since the start"),), hooks=("drawn",)
 )
 class Orifice(Opening):
-    """Opening between two pressures: turbulent, and laminar where the difference is small.
+    """Orifice between two pressures: turbulent, and laminar at small differences.
 
-    With `u` the pressure at the inlet less that at the outlet the flow is
+    With `u` the pressure at the inlet minus that at the outlet the flow is
     `discharge area sqrt(2/density) u/(u^2 + laminar^2)^(1/4)`; `laminar` is the difference at which the Reynolds number
-    is `transition`, so the flow is regular at no difference. Use it for bores and leaks, with a large `transition` for
+    is `transition`, so the flow is smooth around zero. Use it for bores and leaks, with a large `transition` for
     pipes and filters.
 
     Source: W. Borutzky, B. Barnard, J. Thoma 2002, doi:10.1016/S1569-190X(02)00092-8.

@@ -12,8 +12,8 @@ from clutchwork.elements.bases.teeth import PlanetarySet
 class Planetary(PlanetarySet):
     """Planetary gear: sun + ratio ring = (1 + ratio) carrier.
 
-    Use it for a simple planetary set, where sun and ring turn opposite ways when the carrier stands. Give the ratio
-    teeth_ring/teeth_sun, or both numbers of teeth.
+    Use it for a simple planetary set, where sun and ring turn in opposite directions when the carrier is held. Give the
+    ratio teeth_ring/teeth_sun, or both numbers of teeth.
     """
 
     def rows(self) -> list[dict[str, Fraction]]:

@@ -22,8 +22,8 @@ from clutchwork.elements.bases.contacts import Contact
 class PlateContact(Contact):
     """Contact with the load `gain * derating * (pressure - threshold)`, that can wear and fail.
 
-    Use it to build couplings of your own; `DiskClutch` computes its gain from the geometry and adds what else a
-    clutch has. The derating falls from 1 to `worn` as the depth of wear passes `running_in`.
+    Use it to build couplings of your own; `DiskClutch` computes its gain from the geometry and adds drag and heat. The
+    derating falls from 1 to `worn` as the depth of wear passes `running_in`.
     """
 
     base: Node = port("side that the slip is measured from")

@@ -22,8 +22,8 @@ class PolygonSprocket(Component):
     """Sprocket of a chain drive whose strand moves with radius cos(angle in the link) times its speed.
 
     Use it for the ripple of chains on sprockets of few teeth; `Chain` has two with `polygon=True`. The radius is that
-    of the corners, pitch/(2 sin(pi/teeth)). The next link takes over where the chain has the same speed on both; its
-    acceleration jumps there.
+    of the corners, pitch/(2 sin(pi/teeth)). The next link takes over at the angle where both give the chain the same
+    speed; the acceleration jumps there.
 
     Equations: docs/theory/belts.md.
     """

@@ -9,7 +9,7 @@ from clutchwork.signals.bases.motions import SignalError, at_start, bessel, deri
 
 @component(Role.MOTION)
 class PrescribedPosition(PrescribedMotion):
-    """Source that moves a shaft or a mass exactly along the wanted position, whatever torque that takes.
+    """Source that moves a shaft or a mass exactly along a prescribed position, regardless of the torque.
 
     Use it for an actuator that follows a stroke, a steered angle, a measured position. Its speed is the exact
     derivative; where that jumps, as at a point of a table, the speed jumps by an impulse. A position that jumps is
@@ -20,13 +20,13 @@ class PrescribedPosition(PrescribedMotion):
     Source of the filter: W. E. Thomson 1949, doi:10.1049/pi-3.1949.0101.
     """
 
-    position: SignalLike = signal("rad", "wanted angle or position from the base", units=("m",))
+    position: SignalLike = signal("rad", "prescribed angle or position from the base", units=("m",))
     cutoff: float | None = option(
         "Hz", "corner frequency of the filter, none by default", default=None, above=0.0, example=10.0
     )
 
     def start_angle(self) -> float:
-        """Where the signal starts; behind the filter a shaft may be elsewhere."""
+        """Where the signal starts; a shaft behind the filter may start elsewhere."""
         angle = self._started()
         wanted = at_start(as_signal(self.position))
         return angle if self.cutoff is not None and angle else wanted

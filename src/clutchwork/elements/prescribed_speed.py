@@ -9,7 +9,7 @@ from clutchwork.signals.bases.waveform import low_pass
 
 @component(Role.MOTION)
 class PrescribedSpeed(PrescribedMotion):
-    """Source that gives a shaft exactly the wanted speed, whatever torque that takes.
+    """Source that gives a shaft exactly the prescribed speed, regardless of the torque.
 
     Use it for a speed-controlled test bench or a shaft whose speed was measured; its torque is part of the result.
     A jump of the speed becomes an impulse. With `cutoff` the speed follows the signal through a first-order
@@ -20,7 +20,7 @@ class PrescribedSpeed(PrescribedMotion):
     cutoff: float | None = option("Hz", "corner frequency of the low pass, none by default", default=None, above=0.0)
 
     def speed_signal(self, speed: float) -> Signal:  # noqa: ARG002 - it begins with what is wanted
-        """The wanted speed, or what passes the filter."""
+        """The prescribed speed, or the filtered one."""
         wanted = as_signal(self.speed)
         if self.cutoff is None:
             return wanted

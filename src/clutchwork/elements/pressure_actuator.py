@@ -12,14 +12,14 @@ from clutchwork.elements.bases.geometry import Found
     hooks=("margin", "cross"),
 )
 class PressureActuator(Component):
-    """Piston that has to fill, then follows its command with a lag and within limits of its rate.
+    """Piston that first fills, then follows its command with a lag and rate limits.
 
     Use it as the `pressure` of any contact. The return spring takes `spring` off the command. An empty piston fills
     first, in `fill_time` where the command is `fill_pressure` above the spring, and in inverse proportion else; then
     the pressure on the plates rises with the time constant `lag`. Below the pressure of the spring it empties again.
     """
 
-    command: SignalLike = signal("Pa", "wanted pressure at the piston")
+    command: SignalLike = signal("Pa", "commanded pressure at the piston")
     lag: float = param("s", "time constant of the pressure", above=0.0)
     fill_time: float = param("s", "time to fill at `fill_pressure`", default=0.0, at_least=0.0)
     fill_pressure: float = param("Pa", "command above the spring that fills it in `fill_time`", default=1e5, above=0.0)
@@ -36,5 +36,5 @@ class PressureActuator(Component):
         return [("initial_pressure", fault, f"give {say('filled = true', 'filled=True')}")]
 
     def initial_states(self) -> tuple[float, ...]:
-        """Pressure at the start [Pa]; of an empty piston less than none by what it has to fill."""
+        """Pressure at the start [Pa]; of an empty piston negative by what it has to fill."""
         return (self.initial_pressure if self.filled else -self.fill_time * self.fill_pressure / self.lag,)

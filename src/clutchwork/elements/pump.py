@@ -12,13 +12,13 @@ from clutchwork.elements.pump_torque import PumpTorque
 
 @component(Role.COMPOSITE)
 class Pump(Component):
-    """Pump that a shaft of the driveline drives: it delivers oil and takes the torque for it.
+    """Pump driven by a shaft of the driveline: it delivers oil and takes the torque for it.
 
     It delivers `displacement/(2 pi)` per radian, less a leakage that grows with the pressure and falls with the
     viscosity; from an inlet near vacuum, below 20 kPa absolute, it delivers less. It takes
     `displacement (outlet - inlet)/(2 pi efficiency)` and a drag. A pump named "pump" has `pump.torque` and `pump.work`;
-    the energy that it gave to the oil is `pump.oil.energy`, the heat of its losses `pump.oil.loss`. Both together are
-    what it took from the shaft. A line with a pump and no way out bursts: give it a `ReliefValve`.
+    the energy given to the oil is `pump.oil.energy`, the heat of its losses `pump.oil.loss`. Both together are what it
+    took from the shaft. A line with a pump and no outlet bursts: give it a `ReliefValve`.
 
     Source: J. Ivantysyn, M. Ivantysynova, Hydrostatic Pumps and Motors, 2001, chapter 2.
     """

@@ -12,7 +12,7 @@ from clutchwork.elements.bases.meshing import SLIP, Meshing, table_problems
 
 @component(Role.CONTACT, hooks=("bound", "edges", "edge", "fits"), ways=SLIP)
 class RackMesh(Meshing):
-    """Mesh between a shaft and a mass with losses that follow the torque which it transmits: sticks exactly, by load.
+    """Mesh between a shaft and a mass with losses that follow the transmitted torque; it sticks exactly.
 
     It is the part of `Leadscrew` and of `RackPinion` that makes their friction; use those, or this one for a rack
     by its radius alone. Speed of the mass = radius times speed of the shaft relative to the support.

@@ -24,8 +24,8 @@ from clutchwork.elements.bases.ratios import at_start
 class RatioActuator(Component):
     """Ratio that follows its command with a lag: `d ratio/dt = (command - ratio)/lag`.
 
-    Use it as the `ratio` of a `VariableRatio` that a controller or a signal with jumps commands: no drive changes its
-    ratio at once.
+    Use it as the `ratio` of a `VariableRatio` that a controller or a signal with jumps commands: no real drive changes
+    its ratio instantly.
     """
 
     command: SignalLike = signal("1", "wanted ratio", example=2.0)

@@ -19,11 +19,11 @@ from clutchwork.elements.oil_volume import BAR
     hooks=("drawn",),
 )
 class ReliefValve(Opening):
-    """Valve that lets oil off where the pressure is above its command: fully at `span` above it.
+    """Valve that releases oil while the pressure is above its command, fully open at `span` above it.
 
-    With a number as its command it is a relief valve, with a signal the regulator of a line pressure: it takes what the
-    pump delivers and nobody needs. What it cannot do is to raise the pressure, so that falls below the command where
-    more oil is wanted than is delivered. A `PressureValve` as its command is a solenoid with a table over its current.
+    With a number as its command it is a relief valve, with a signal the regulator of a line pressure: it takes the
+    surplus of the pump. It cannot raise the pressure, which falls below the command when the demand exceeds the
+    delivery. A `PressureValve` as its command is a solenoid with a table over its current.
 
     Source: H. E. Merritt, Hydraulic Control Systems, Wiley 1967, chapter 9.
     """

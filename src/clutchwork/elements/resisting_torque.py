@@ -13,7 +13,7 @@ class ResistingTorque(Heating):
     """Torque `-torque * tanh(speed_of_shaft / speed)`: full size against the motion, none at rest.
 
     Use it for a road load that must not turn the shaft backward. For exact sticking use `BearingFriction`. Its work
-    counts as that of a load; what a thermal node takes of it is heat.
+    counts as that of a load; the share that a thermal node takes is heat.
     """
 
     work: ClassVar[Work] = Work.SOURCE

@@ -8,7 +8,7 @@ from clutchwork.elements.bases.heating import Heating
 
 @component(Role.TORQUE, states=(State("filling", "1", "share of the full torque"),), hooks=("edges", "edge", "count"))
 class Retarder(Heating):
-    """Brake `-filling min(capacity w^2, max_torque, max_power/abs(w))` against the speed w; it holds nothing at rest.
+    """Brake `-filling min(capacity w^2, max_torque, max_power/abs(w))` against the speed w; no torque at rest.
 
     Use it for hydrodynamic retarders of trucks and rail cars: at low speed the filled ring limits the torque, then the
     valve, then the cooler. The filling follows the command with the time constant `lag`.
@@ -23,7 +23,7 @@ class Retarder(Heating):
         "N m", "largest torque, no limit by default", default=1e15, above=0.0, units=("N",), example=800.0
     )
     max_power: float = param("W", "largest power, no limit by default", default=1e15, above=0.0, example=1e5)
-    command: SignalLike = signal("1", "wanted filling, 0 empty, 1 full", at_least=0.0, at_most=1.0, default=1.0)
+    command: SignalLike = signal("1", "commanded filling, 0 empty, 1 full", at_least=0.0, at_most=1.0, default=1.0)
     lag: float = param(
         "s", "time constant of the filling, 0: it follows at once", default=0.0, at_least=0.0, fixed=True, example=0.1
     )

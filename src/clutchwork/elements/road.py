@@ -2,19 +2,21 @@
 
 from __future__ import annotations
 
+from itertools import pairwise
+
 from clutchwork.declare import Component, Points, Role, SignalLike, State, component, curve, option, signal
 
 
 @component(
     Role.PROCESS,
     states=(
-        State("slope", "1", "rise over horizontal way where the vehicle is"),
-        State("position", "m", "horizontal way along the road"),
+        State("slope", "1", "rise over horizontal distance where the vehicle is"),
+        State("position", "m", "horizontal distance along the road"),
     ),
     hooks=("margin", "cross"),
 )
 class Road(Component):
-    """Slope of a road by its elevation, a table over the horizontal position of what drives on it.
+    """Slope of a road from its elevation, a table over the horizontal position of the vehicle.
 
     Use it as the `slope` of a `Vehicle`. The position follows the speed, `d position/dt = speed cos(a)` with
     `a = atan(slope)`, so that the height is that of the table. Between two points the slope is constant, at a point it
@@ -27,4 +29,6 @@ class Road(Component):
 
     def initial_states(self) -> tuple[float, ...]:
         """Slope and position [m] at the start."""
-        return (0.0, self.initial_position)
+        at = self.initial_position
+        here = [(y - x) / (b - a) for (a, x), (b, y) in pairwise(self.elevation) if a <= at < b]
+        return (here[0] if here else 0.0, at)

@@ -16,9 +16,9 @@ class RollingContact(Contact):
     """Wheel that rolls without slip while the road can hold it, else slides: a clutch between rim and road.
 
     The slip is `v - radius (w - w_support)`, the force on the mass within `static coefficient * load` while it rolls
-    and `-sign(slip) kinetic coefficient * load` while it slides. Use it for launches and brakings on the limit of
-    grip where the creep of a tyre does not matter: it takes one contact and no states. Brake, wheel and road may all
-    hold at once. Its part "rim" is a mass without inertia at the circumference of the wheel.
+    and `-sign(slip) kinetic coefficient * load` while it slides. Use it for launches and braking at the limit of grip
+    where the creep of a tyre does not matter: it takes one contact and no states. Brake, wheel and road may all hold at
+    once. Its part "rim" is a mass without inertia at the circumference of the wheel.
     """
 
     shaft: Node = port("axle of the wheel", domain="rotation")

@@ -17,7 +17,7 @@ class RollingResistance(Contact):
     shaft: Node = port("mass that rolls", domain="translation")
     friction: Law = law("rolling coefficient over the speed, static coefficient at rest")
     weight: float = param("N", "weight of all that rolls with it", above=0.0)
-    slope: SignalLike = signal("1", "rise over horizontal way, positive uphill", default=0.0, example=0.05)
+    slope: SignalLike = signal("1", "rise over horizontal distance, positive uphill", default=0.0, example=0.05)
     tolerance: float = option(
         "m/s", "speed below which it may lock; 0: at exactly zero", default=0.0, at_least=0.0, last=1
     )

@@ -17,12 +17,12 @@ from clutchwork.elements.relief_valve import command_at_start
     hooks=("drawn",),
 )
 class SpoolValve(Opening):
-    """Spool that joins a clutch to its supply or to the exhaust: by a pilot pressure, against that of the clutch.
+    """Spool that connects a clutch to supply or exhaust, moved by a pilot pressure against that of the clutch.
 
-    The way of the spool, from -1 to 1, is `(pilot - spring - feedback clutch)/span`. Beyond `overlap` it opens the
-    supply, below `-overlap` the exhaust, each in proportion; in between both are closed but for their clearance. With
-    a feedback of 1 it regulates the clutch to the pilot pressure, with 0 it is a directional valve. The spool has no
-    mass. A `PressureValve` as its command is a solenoid with a table over its current.
+    The travel of the spool, from -1 to 1, is `(pilot - spring - feedback clutch)/span`. Beyond `overlap` it opens the
+    supply, below `-overlap` the exhaust, each in proportion; in between both are closed except for their clearance.
+    With a feedback of 1 it regulates the clutch to the pilot pressure, with 0 it is a directional valve. The spool has
+    no mass. A `PressureValve` as its command is a solenoid with a table over its current.
 
     Source: H. E. Merritt, Hydraulic Control Systems, Wiley 1967, sections 5-1 and 5-6.
     """

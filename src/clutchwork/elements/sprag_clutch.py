@@ -11,10 +11,10 @@ from clutchwork.laws.coulomb import Coulomb
 
 @component(Role.CONTACT, hooks=("holding",))
 class SpragClutch(Contact):
-    """Freewheel with a drag that gives way when its sprags roll over, at the torque `holding`.
+    """Freewheel with drag whose sprags roll over at the torque `holding`.
 
     Use it where a freewheel may be overloaded, or where its drag counts. The follower may run ahead of the base
-    against the drag; it falls behind only above the torque that the sprags hold. `OneWayClutch` holds any torque.
+    against the drag; it falls behind only above the holding torque of the sprags. `OneWayClutch` holds any torque.
     """
 
     one_way: ClassVar[bool] = True

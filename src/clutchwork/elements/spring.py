@@ -11,7 +11,7 @@ from clutchwork.declare import Component, Node, Passive, Role, State, Work, comp
 class Spring(Component):
     """Elastic shaft without damping.
 
-    Use it where damping does not matter; `SpringDamper` has some.
+    Use it where damping does not matter; otherwise use `SpringDamper`.
     The torque on the follower is -stiffness twist, with twist = follower - base - free angle.
     """
 

@@ -12,7 +12,7 @@ from clutchwork.elements.bases.heating import Heating
 class SpringDamper(Heating):
     """Elastic shaft with internal damping.
 
-    Use it where two inertias are joined by something that twists: shafts, dual-mass flywheels, tyres.
+    Use it where an elastic part joins two inertias: shafts, dual-mass flywheels, tyres.
     The torque on the follower is -(stiffness twist + damping rate), with twist = follower - base - free angle.
     """
 

@@ -29,10 +29,10 @@ from clutchwork.elements.plate_contact import PlateContact
 class Synchroniser(Heating):
     """Double-sided synchroniser: one sleeve that joins its hub to one of two gears, or to none.
 
-    On either side a cone brings the gear to the speed of the hub, with the torque
-    `coefficient force radius / sin(half_angle)`; once the slip is below `speed` the pointed teeth of the dog clutch
-    mesh and hold any torque. A command from 0 to 1 shifts to the forward gear, from 0 to -1 to the backward one.
-    Use it for the shifts of manual and automated gearboxes.
+    On each side a cone brings the gear to the speed of the hub, with the torque `coefficient force radius /
+    sin(half_angle)`; once the slip is below `speed` the pointed teeth of the dog clutch engage and carry any torque. A
+    command from 0 to 1 shifts to the forward gear, from 0 to -1 to the backward one. Use it for the shifts of manual
+    and automated gearboxes.
 
     Its parts are "forward_cone", "forward_dog", "backward_cone", "backward_dog".
     """
@@ -51,7 +51,7 @@ class Synchroniser(Heating):
     damping: float = param("s/rad", "damping of the flanks over their force", default=1.0, at_least=0.0)
     speed: float = param("rad/s", "slip above which the sleeve is held back", default=1.0, above=0.0)
     lag: float = param("s", "time constant of the sleeve", default=0.02, above=0.0)
-    command: SignalLike = signal("1", "wanted position of the sleeve: 1 forward, 0 neutral, -1 backward")
+    command: SignalLike = signal("1", "commanded position of the sleeve: 1 forward, 0 neutral, -1 backward")
     engaged: bool = option("1", "the forward gear is in mesh at the start", default=False, flag=True)
     engaged_backward: bool = option("1", "the backward gear is in mesh at the start", default=False, flag=True)
 

@@ -13,10 +13,10 @@ from clutchwork.elements.conduction import Conduction
 class ThermalPlate(Component):
     """Plate that is heated at its surface: thermal nodes at equal distances, joined by conduction.
 
-    Use it where an engagement is shorter than the heat needs to cross the plate, thickness^2/diffusivity, so that the
-    surface gets far hotter than the mean. Give `plate.surface` as the `heat` of a contact and join what cools it to
-    `plate.back` or `plate.surface`. A plate that both faces heat alike is two plates of half the thickness that are
-    insulated in the middle: one of half the thickness and twice the area. The error falls as 1/(nodes - 1)^2.
+    Use it where an engagement is shorter than the time heat takes to cross the plate, thickness^2/diffusivity, so that
+    the surface gets far hotter than the mean. Give `plate.surface` as the `heat` of a contact and connect the cooling
+    to `plate.back` or `plate.surface`. A plate heated equally at both faces is one of half the thickness and twice the
+    area. The error falls as 1/(nodes - 1)^2.
 
     Source: H. S. Carslaw, J. C. Jaeger, Conduction of Heat in Solids, 2nd ed., Oxford 1959, section 3.8.
     """

@@ -8,7 +8,7 @@ from clutchwork.elements.bases.driving import signal_drives
 
 @component(Role.TORQUE)
 class Torque(Component):
-    """Given torque on a shaft, its reaction on the base.
+    """Prescribed torque on a shaft, with its reaction on the base.
 
     Use it for loads, motors and engines whose torque is known over time. On a mass it is a force.
     """

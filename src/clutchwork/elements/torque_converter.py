@@ -20,11 +20,11 @@ LAGS = (State("impeller_torque", "N m", "torque that the impeller takes up"),)
 
 @component(Role.TORQUE, states=LAGS, hooks=("margin", "cross", "turns", "settle", "fits", "count"), ways=WAYS)
 class TorqueConverter(Heating):
-    """Hydrodynamic torque converter: k w^2 from the impeller, m times as much at the turbine, over the speed ratio.
+    """Hydrodynamic torque converter: k w^2 at the impeller, m times that at the turbine, over the speed ratio.
 
-    Use it between engine and automatic gearbox. The stator hands the difference of the torques to the support. Where
-    the turbine overruns the impeller the stator runs free, and the turbine drives the impeller by `coast_capacity`. A
-    lock-up clutch is a contact beside it; locked, it carries everything.
+    Use it between engine and automatic gearbox. The stator passes the difference of the torques to the support. When
+    the turbine overruns the impeller the stator freewheels, and the turbine drives the impeller with `coast_capacity`.
+    A lock-up clutch is a contact in parallel; when locked it carries everything.
     """
 
     impeller: Node = port("wheel of the engine")
@@ -99,7 +99,7 @@ class TorqueConverter(Heating):
 
 
 def _most_power(ratios: Sequence[float], multiples: Sequence[float]) -> tuple[float, float] | None:
-    """The speed ratio at which the turbine has the most power, and m there, where that is more than goes in."""
+    """The speed ratio of the largest turbine power, and m there, if that exceeds the power of the impeller."""
     places = list(zip(ratios, multiples, strict=True))
     for (x, m), (x_next, m_next) in pairwise(places.copy()):
         slope = (m_next - m) / (x_next - x)

@@ -11,8 +11,8 @@ from clutchwork.laws.coulomb import Coulomb
 class TorqueLimiter(Contact):
     """Clutch under a constant spring force that slips when its torque is exceeded.
 
-    Use it to protect a drive from overload. With the default friction it slips with the torque at which it breaks
-    away; `Coulomb(static=1.0, kinetic=0.8)` lets it slip with less.
+    Use it to protect a drive from overload. With the default friction it slips at its break-away torque;
+    `Coulomb(static=1.0, kinetic=0.8)` makes it slip at less.
     """
 
     base: Node = port("side that the slip is measured from")

@@ -15,9 +15,8 @@ class TorqueSensor(Component):
 
     Use it where a rigid line is to be cut open: between gearbox and propeller shaft, in one branch of a gear set.
     Torque is that on the follower, power that which flows from base to follower, energy its integral since the start,
-    summed up with the work of all elements, impulses included. Both shafts turn as one, and what their inertias take is
-    seen: the torque is the reaction of the rigid line. The torque of springs, clutches and gears is a signal of their
-    own already.
+    impulses included. Both shafts turn as one; the torque is the reaction of the rigid line, which includes what
+    accelerates the inertias behind it. Springs, clutches and gears already have a torque signal.
     """
 
     reports: ClassVar[Mapping[str, str]] = {

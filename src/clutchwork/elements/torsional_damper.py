@@ -17,15 +17,14 @@ LISTS = ("friction_limit", "friction_stiffness", "friction_load", "friction_spee
 
 @component(Role.COMPOSITE)
 class TorsionalDamper(Heating):
-    """Springs in stages between two masses, with friction beside them: a dual-mass flywheel, a clutch disc.
+    """Springs in stages between two masses, with friction in parallel: a dual-mass flywheel, a clutch disc.
 
     The torque on the follower is -(torque(twist) + friction + damping rate): a table over the twist, extended linearly
     beyond its ends, whose knots are stages and gaps, and any number of friction elements in parallel. Each is a spring
     of `friction_stiffness` in series with dry friction up to `friction_limit + friction_load abs(torque(twist)) +
-    friction_speed w_base^2`, so that
-    loops close and smaller ones inside are remembered, whatever the rate; that is how arc springs act.
-    `dry_friction` is one without give, which sticks exactly. With equal amplitudes A about zero and a constant limit f
-    each makes the heat 4 f (A - f/stiffness) per cycle.
+    friction_speed w_base^2`, so that hysteresis loops close and inner loops are remembered, regardless of the rate, as
+    with arc springs. `dry_friction` is rigid friction that sticks exactly. With equal amplitudes A about zero and a
+    constant limit f each makes the heat 4 f (A - f/stiffness) per cycle.
 
     Its parts are "friction_1" and so on and "dry"; torque, power, work and heat of all count as its own.
 
@@ -55,7 +54,7 @@ class TorsionalDamper(Heating):
     friction_speed: Sequence[float] | None = numbers(
         "N m s2/rad2", "what the square of the speed of the base adds to the limit of each", default=None, at_least=0.0
     )
-    dry_friction: float = param("N m", "friction that has no give", default=0.0, at_least=0.0, units=("N",))
+    dry_friction: float = param("N m", "rigid friction", default=0.0, at_least=0.0, units=("N",))
     initial_twist: float = option("rad", "twist at the start", default=0.0, units=("m",))
 
     def problems(self) -> Found:
@@ -89,7 +88,7 @@ class TorsionalDamper(Heating):
             yield self._part(TorqueLimiter, f"{self.name}.dry", torque=self.dry_friction, locked=False)
 
     def _part(self, cls: type[Heating], name: str, **values: Any) -> Component:
-        """Something between the two masses."""
+        """A part between the two masses."""
         ends: dict[str, Any] = {"base": self.base, "follower": self.follower}
         return cls(name, **ends, **values, heat=self.heat, heat_share=self.heat_share)
 

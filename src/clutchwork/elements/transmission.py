@@ -56,13 +56,14 @@ class Transmission(TabledComposite, Heating):
 
     Use it for automatic gearboxes, hubs and power splits. The gearbox is one of the catalogue, "zf-8hp70", a file, or a
     `cw.Gearbox`. With the name "gearbox" its members are the shafts "gearbox.S12", its sets "gearbox.P1", its shift
-    elements "gearbox.A": so they are called in results and events, by `sim.set({"gearbox.A.pressure": 2e5})` and by
-    `System.changed({"gearbox.A.gain": 1e-3})`. The members at input and output are joined rigidly to their shafts.
+    elements "gearbox.A": results, events, `sim.set({"gearbox.A.pressure": 2e5})` and `System.changed({"gearbox.A.gain":
+    1e-3})` use these names. The members at input and output are joined rigidly to their shafts.
 
     `shift` gives elements by their fields, as an element of the driveline has them, without ports: `{"A": {"type":
-    "disk_clutch", ...}}`. What it leaves out is a wet friction element (coefficients 0.13 and 0.11), a freewheel or a
-    dog clutch, by its kind; it holds 1.5 times the most that it carries in any gear at the input torque `torque`, at
-    1 MPa. Pressures are 0; with `gear` those of the elements that are closed in it are 1 MPa, and they start locked.
+    "disk_clutch", ...}}`. The others are wet friction elements (coefficients 0.13 and 0.11), freewheels or dog
+    clutches, by their kind; at 1 MPa each holds 1.5 times the largest torque that it carries in any gear at the input
+    torque `torque`. Pressures are 0; with `gear` those of the elements that are closed in it are 1 MPa, and they start
+    locked.
 
     Equations: docs/theory/gearboxes.md. Source: H. W. Müller, Epicyclic Drive Trains, 1982.
     """
@@ -74,7 +75,9 @@ class Transmission(TabledComposite, Heating):
     gearbox: Any = data("one of the catalogue by name, a file, its content or an object", example=frozen(EXAMPLE))
     inertia: float = param("kg m2", "inertia of each member that `inertias` does not name", default=0.01, at_least=0.0)
     inertias: Mapping[str, float] | None = named("kg m2", "inertia by member", at_least=0.0)
-    torque: float = param("N m", "most torque at the input, for capacities that nobody gave", default=400.0, above=0.0)
+    torque: float = param(
+        "N m", "most torque at the input, for capacities that are not given", default=400.0, above=0.0
+    )
     shift: Mapping[str, Mapping[str, Any]] | None = elements("fields of shift elements by name, without ports")
     drag: Mapping[str, Mapping[str, Any]] | None = elements(
         "fields of an element beside each, the drag of its open plates: a wet_drag where no type is given"
@@ -102,7 +105,7 @@ class Transmission(TabledComposite, Heating):
 
     @cached_property
     def _box(self) -> Definition | None:
-        """Its gearbox; None where that has mistakes, or values that its parts are made of."""
+        """Its gearbox; None if that, or a value that its parts need, has mistakes."""
         tables = (self.inertias, self.speeds, self.shift, self.drag, self.efficiencies)
         numbers = (self.torque, self.efficiency or 1.0, self.inertia, *self._numbers())
         sound = all(table is None or isinstance(table, Mapping) for table in tables)
@@ -225,7 +228,7 @@ class Transmission(TabledComposite, Heating):
         return own | {f"drag.{element.name}": DRAG for element in box.elements}
 
     def held(self) -> Mapping[str, Part]:
-        """Members and shift elements, whose values are changed as those of shafts and elements of the driveline."""
+        """Members and shift elements, whose values can be changed like those of the driveline."""
         start = len(self.name) + 1
         named: dict[str, Part] = {part.name[start:]: part for part in self._made if isinstance(part, Node)}
         members = {name: named[name] for name in (self._box.members if self._box else ())}

@@ -5,7 +5,20 @@ from __future__ import annotations
 from collections.abc import Mapping
 from fractions import Fraction
 
-from clutchwork.declare import Node, Role, SignalLike, State, Way, component, exact, option, param, port, signal
+from clutchwork.declare import (
+    Node,
+    Role,
+    SignalLike,
+    State,
+    StateSum,
+    Way,
+    component,
+    exact,
+    option,
+    param,
+    port,
+    signal,
+)
 from clutchwork.elements.bases.heating import Heating
 
 WAYS = (
@@ -21,12 +34,12 @@ WAYS = (
     ways=WAYS,
 )
 class Tyre(Heating):
-    """Tyre by the Magic Formula with relaxation, which holds a vehicle at rest as a spring does.
+    """Tyre by the Magic Formula with relaxation; it holds a vehicle at rest like a spring.
 
-    Use it where wheels slip, and for the elasticity between driveline and road. The force on the mass is
-    `load D sin(C atan(B x - E (B x - atan(B x))))`; x is the slip ratio once the tread has rolled in over the
-    relaxation length, and a deflection at rest. `torque` is that force [N], `rate` the speed of the mass over that of
-    the tread.
+    Use it where wheels slip, and for the elasticity between driveline and road. The force on the mass is `load D sin(C
+    atan(B x - E (B x - atan(B x))))`; x is the slip ratio, reached over the relaxation length, and at rest a deflection
+    of the tread. `torque` is that force [N], `rate` the speed of the mass over that of the tread, `slip` the ratio x,
+    positive where the wheel drives.
     """
 
     shaft: Node = port("wheel", domain="rotation")
@@ -38,7 +51,7 @@ class Tyre(Heating):
     C: float = param("1", "shape factor; above 2 a wheel that spins would brake", default=1.65, above=0.0, at_most=2.0)
     D: float = param("1", "peak factor, the largest force over the load", default=1.0, above=0.0)
     E: float = param("1", "curvature factor", default=0.3, at_most=1.0)
-    relaxation_length: float = param("m", "way over which the force builds up", default=0.25, above=0.0)
+    relaxation_length: float = param("m", "distance over which the force builds up", default=0.25, above=0.0)
     slip_limit: float = param(
         "1", "slip ratio at which a wheel that spins at standstill saturates", default=2.0, above=0.0
     )
@@ -52,6 +65,10 @@ class Tyre(Heating):
         """Slip of the contact, and the speed of the mass."""
         radius = exact(self.radius)
         return {"slip": {"mass": 1, "shaft": -radius, "support": radius}, "speed": {"mass": 1}}
+
+    def state_sums(self) -> tuple[StateSum, ...]:
+        """The slip ratio that its force follows."""
+        return (StateSum("slip", "1", {"deflection": 1.0 / self.relaxation_length}),)
 
     def initial_states(self) -> tuple[float, ...]:
         """Deflection at the start [m]."""

@@ -17,11 +17,11 @@ from clutchwork.elements.bases.ratios import Rates, angle_of
     ways=(Way("follower", "follower relative to the support"), Way("base", "base relative to the support")),
 )
 class UniversalJoint(Component):
-    """Cardan joint between shafts at an angle: the follower swings about the speed of the base twice per turn.
+    """Cardan joint between shafts at an angle: the follower oscillates about the speed of the base twice per turn.
 
-    Use it for propeller shafts and steering columns. tan(angle of the follower) = tan(angle of the base)/cos(bend);
-    the ratio of the speeds runs between cos(bend) and 1/cos(bend). Two joints of one bend have constant speed with
-    `phase = pi/2` at the second, and double the error with 0.
+    Use it for propeller shafts and steering columns. tan(angle of the follower) = tan(angle of the base)/cos(bend); the
+    ratio of the speeds runs between cos(bend) and 1/cos(bend). Two joints of equal bend give constant speed with `phase
+    = pi/2` at the second one, and twice the error with 0.
 
     Equations: docs/theory/varying-ratios.md.
     Source: F. Schmelz, H.-Ch. Graf v. Seherr-Thoss, E. Aucktor, Universal Joints and Driveshafts, Springer 2006.
@@ -29,7 +29,7 @@ class UniversalJoint(Component):
 
     work: ClassVar[Work] = Work(0)
 
-    base: Node = port("shaft that the angle is counted of")
+    base: Node = port("shaft whose angle it is")
     follower: Node = port("shaft at an angle to it")
     support: Node | None = port("member that carries both and takes the reaction", default=None)
     bend_angle: float = param("rad", "angle between the shafts", at_least=0.0, below=pi / 2, example=0.5)

@@ -32,10 +32,10 @@ class ValveBody(Component):
     Use it for the pressures of a `Transmission`: a body named "body" has for the element A the valve `body.A_valve`,
     the oil behind it, `body.A_port`, and `body.A_piston`, whose force is the `normal_force` of the element:
     `shift={"A": {"normal_force": body.part("A_piston"), "gain": ...}}`. Its pump takes its torque from `shaft`; the
-    line is `body.line`, which `body.regulator` keeps at `line_pressure` as long as the pump delivers what pistons and
-    leaks take. Shift controllers command `body.A_valve.command`, and find valve and piston by themselves.
+    line is `body.line`, which `body.regulator` holds at `line_pressure` as long as the pump covers pistons and leakage.
+    Shift controllers command `body.A_valve.command`, and find valve and piston by themselves.
 
-    What elements have in common is given once; build anything else from a `Pump`, `SpoolValve` and `ClutchActuator`.
+    Parameters are common to all elements; build anything else from a `Pump`, `SpoolValve` and `ClutchActuator`.
     The bore before a piston is turbulent at a fixed density: filling times do not follow the temperature of the oil,
     only valves, pump and leakage do.
     """
@@ -47,7 +47,7 @@ class ValveBody(Component):
     pressures: Mapping[str, float] | None = named(
         "Pa", "pressure at the start by element, of those not empty", above=0.0
     )
-    line_pressure: SignalLike = signal("Pa", "wanted pressure of the line", default=1.2e6, at_least=0.0)
+    line_pressure: SignalLike = signal("Pa", "commanded pressure of the line", default=1.2e6, at_least=0.0)
     displacement: float = param("m3", "oil of the pump per turn", default=2e-5, above=0.0)
     efficiency: float = param("1", "hydraulic torque over torque of the pump", default=0.9, above=0.0, at_most=1.0)
     drag: float = param("N m s/rad", "torque per speed of the pump without pressure", default=2e-3, at_least=0.0)
@@ -126,7 +126,7 @@ class ValveBody(Component):
         )
 
     def _stroke(self, force: float) -> float:
-        """At which the springs balance a force of the oil."""
+        """Stroke at which the springs balance a force of the oil."""
         alone = (force - self.preload) / self.spring_rate
         if alone <= self.kiss_stroke:
             return max(alone, 0.0)

@@ -17,8 +17,9 @@ from clutchwork.elements.bases.ratios import Rates, at_start, ratio_problems
 class VariableGear(Component):
     """Speed of the input = ratio times speed of the output, both relative to the support; the ratio is a signal.
 
-    Use it as the gear inside of a `VariableRatio`, which can slip too. Power goes through without loss; momentum
-    does not, for the rate of the ratio accelerates both sides. A jump of the ratio is the limit of a fast change.
+    Use it as the gear inside of a `VariableRatio`, which can slip too. Power is transmitted without loss; momentum is
+    not conserved, because the rate of the ratio accelerates both sides. A jump of the ratio is the limit of a fast
+    change.
     """
 
     work: ClassVar[Work] = Work(0)

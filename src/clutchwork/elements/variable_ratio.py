@@ -19,11 +19,11 @@ class VariableRatio(Sticking):
     """Transmission whose ratio varies: speed of the input = ratio times speed of the output, relative to the support.
 
     Use it for a CVT, a toroidal drive, a hydrostatic drive without losses. The ratio is a signal, or the state of a
-    process that follows a command, such as a controller's. Power goes through without loss; while the ratio changes it
-    accelerates both sides, with the torque that users read as `torque`, on the input. A jump of the ratio keeps the
-    energy, not the momentum. At ratio 0 the input stands.
+    process that follows a command, such as a controller's. Power is transmitted without loss; a change of the ratio
+    accelerates both sides, with the signal `torque` on the input. A jump of the ratio keeps the energy, not the
+    momentum. At ratio 0 the input is at rest.
 
-    With a `capacity`, torque at the input, it slips when more is asked of it, as a belt does, and grips again.
+    With a `capacity`, torque at the input, it slips under a larger torque, as a belt does, and grips again.
 
     Equations: docs/theory/varying-ratios.md.
     """

@@ -14,7 +14,7 @@ from clutchwork.laws.coulomb import Coulomb
 
 @component(Role.COMPOSITE)
 class Vehicle(Component):
-    """Forces of the road and the air on the mass of a vehicle: grade, drag, rolling resistance that holds at rest.
+    """Road and air forces on the mass of a vehicle: grade, drag, and rolling resistance that holds at rest.
 
     `-m g sin(a) - density/2 area (v - wind) abs(v - wind) - R`, `a = atan(slope)`, with the rolling resistance
     `R = sign(v) m g cos(a) (rolling_coefficient + rolling_rise abs(v))`. At rest the vehicle stays while all other
@@ -27,10 +27,10 @@ class Vehicle(Component):
     mass: Node = port("mass that drives", domain="translation")
     drag_area: float = param("m2", "frontal area times drag coefficient", default=0.0, at_least=0.0)
     air_density: float = param("kg/m3", "density of the air", default=1.2, above=0.0)
-    wind: SignalLike = signal("m/s", "speed of the air along the way, positive from behind", default=0.0)
+    wind: SignalLike = signal("m/s", "speed of the air along the road, positive from behind", default=0.0)
     rolling_coefficient: float = param("1", "rolling resistance over normal force", default=0.012, at_least=0.0)
     rolling_rise: float = param("s/m", "rise of that coefficient with the speed", default=0.0, at_least=0.0)
-    slope: SignalLike = signal("1", "rise over horizontal way, positive uphill", default=0.0)
+    slope: SignalLike = signal("1", "rise over horizontal distance, positive uphill", default=0.0)
     gravity: float = param("m/s2", "acceleration of gravity", default=9.80665, above=0.0)
     locked: bool = option("1", "held at rest at the start", default=False, flag=True)
 

@@ -9,8 +9,8 @@ from clutchwork.declare import Component, Role, SignalLike, State, component, pa
 class Wear(Component):
     """Depth of wear that grows with the energy of sliding: `d depth/dt = rate heat/area`.
 
-    Use it with `heat = HeatFlow(contact)` where a contact is to age within a run; `DiskClutch` holds one when it has a
-    `wear_rate`. The volume worn off is `rate` times the energy, which is Archard's law at a constant coefficient.
+    Use it with `heat = HeatFlow(contact)` where a contact should wear within a run; `DiskClutch` holds one when it has
+    a `wear_rate`. The worn volume is `rate` times the energy, which is Archard's law at a constant coefficient.
 
     Source: J. F. Archard 1953, doi:10.1063/1.1721448.
     """

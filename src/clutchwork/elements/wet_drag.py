@@ -10,10 +10,10 @@ from clutchwork.elements.bases.heating import Heating
 class WetDrag(Heating):
     """Drag `2 peak scale x/(1 + x^2)` against the slip, with x = slip/speed: it rises to a peak and falls beyond it.
 
-    Use it beside the clutch of a wet pack: at low slip the oil film is sheared, beyond the peak air enters and the
-    film breaks up. Give `scale` as a signal where the drag changes with the oil flow or the temperature.
+    Use it in parallel to the clutch of a wet pack: at low slip the oil film is sheared, beyond the peak air enters and
+    the film breaks up. Give `scale` as a signal where the drag changes with the oil flow or the temperature.
 
-    Source of the course over speed: the review of L. Pointner-Gabriel, K. Voelkel, K. Stahl 2025,
+    Source of the curve over speed: the review by L. Pointner-Gabriel, K. Voelkel, K. Stahl 2025,
     doi:10.3390/lubricants13010027.
     """
 

@@ -13,11 +13,11 @@ from clutchwork.elements.mesh import Mesh
 
 @component(Role.COMPOSITE)
 class WormGear(Sticking):
-    """Worm gear with the sliding friction of its flanks; self-locking where the lead angle is small.
+    """Worm gear with the sliding friction of its flanks; self-locking if the lead angle is small.
 
     Use it for hoists, steering and seat drives. With `rho = atan(coefficient/cos(normal_angle))` its efficiency is
-    `tan(lead)/tan(lead + rho)` where the worm drives, and `tan(lead - rho)/tan(lead)` where the wheel does. Where that
-    is not above zero, lead <= rho, no load at the wheel starts the worm, and lowering must be driven.
+    `tan(lead)/tan(lead + rho)` where the worm drives, and `tan(lead - rho)/tan(lead)` where the wheel does. If that is
+    not positive, lead <= rho, no load at the wheel can drive the worm, and lowering needs power.
     """
 
     worm: Node = port("worm shaft, whose speed is ratio times that of the wheel")

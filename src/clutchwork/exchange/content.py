@@ -14,7 +14,7 @@ from clutchwork.base.classes import dataclass
 from clutchwork.base.extras import program
 from clutchwork.declare.options import OPTIONS
 from clutchwork.model.settings import plain_settings
-from clutchwork.results.events import UNITS, Event, Events
+from clutchwork.results.events import Event, Events
 from clutchwork.results.selection import chosen
 from clutchwork.results.time_grid import at_raster
 from clutchwork.results.units import Converter, converter
@@ -74,10 +74,11 @@ class Content:
 
     def event_columns(self) -> Iterator[ExportedSignal]:
         """Every field of every event."""
+        units = self.events.units
         for item in fields(Event):
             kind = str if item.name in ("element", "before", "after", "cause") else float
             values = np.array([getattr(event, item.name) for event in self.events], dtype=kind)
-            yield ExportedSignal(item.name, UNITS.get(item.name, ""), values)
+            yield ExportedSignal(item.name, units.get(item.name, ""), values)
 
     def about(self) -> dict[str, Any]:
         """Where the signals come from, as plain data."""

@@ -43,7 +43,7 @@ class ExecutorError(ClutchworkError, RuntimeError):
 
 
 class Stopped(Exception):  # noqa: N818, it is caught where it is raised
-    """Work that nobody waits for."""
+    """Drop work whose result is no longer needed."""
 
 
 def on_and_on() -> None:

@@ -21,7 +21,7 @@ class OnRay:
     name = "Ray"
 
     def __init__(self, address: str | None, workers: int | None) -> None:
-        # nobody is told, and nothing is listened to, unless the user wants it
+        # no usage reports and no open port unless the user wants them
         os.environ.setdefault("RAY_USAGE_STATS_ENABLED", "0")
         os.environ.setdefault("RAY_ACCEL_ENV_VAR_OVERRIDE_ON_ZERO", "0")
         self._ray = need("ray", "ray", "on='ray'")

@@ -39,7 +39,7 @@ class Threads:
                     for one in done:
                         yield one.result()
             finally:
-                # Ctrl-C, a mistake, or nobody asks for more
+                # Ctrl-C, a mistake, or no further request
                 end.set()
                 for one in going:
                     one.cancel()

@@ -67,7 +67,7 @@ NAMES = {
     "CalibrationInterrupted": "calibration.result",
     "at": "sweeps.outputs",
     "calibrate": "calibration.calibrate",
-    "jerk": "calibration.terms",
+    "jerk": "sweeps.outputs",
     "limit": "calibration.limits",
     "rms_jerk": "calibration.terms",
     "to_jax": "frameworks.jax",
@@ -109,6 +109,7 @@ NAMES = {
     "truncated_normal": "studies.distributions",
     "uniform": "studies.distributions",
     "sweep": "sweeps.sweep",
+    "times": "sweeps.factors",
     "variants": "sweeps.variants",
 }
 

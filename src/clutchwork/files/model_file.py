@@ -55,7 +55,7 @@ from clutchwork.signals.bases.sheets import one_reading
 # more belongs into CSV files
 MOST_BYTES = 10_000_000
 ENDINGS = (".toml", ".json")
-# what nobody means when a model file is missing
+# not suggested when a model file is missing
 NO_MODELS = ("pyproject.toml", "package.json", "package-lock.json", "tsconfig.json", "Cargo.toml")
 
 

@@ -42,7 +42,7 @@ def add_command(subparsers: Any) -> None:
         "parameters of a friction law from measured slip and torque",
         examples=EXAMPLES,
         codes="Exit code 1: the samples do not determine all free parameters, or the residuals are not noise; the "
-        "results are written all the same.",
+        "results are written nevertheless.",
     )
     fit.add_argument("file", type=Path, help="CSV file; a unit in brackets after the name of a column is converted")
     fit.add_argument("--law", required=True, metavar="KIND", help="friction law, such as stribeck")

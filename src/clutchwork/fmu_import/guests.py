@@ -39,7 +39,7 @@ class Guests:
         self._open.clear()
 
     def close(self) -> None:
-        """End all of them for good, as their run has."""
+        """End all of them, as their run has ended."""
         self.renew()
         self._names.clear()
 

@@ -116,7 +116,7 @@ class Process:
         return data if data or not late.finished.is_set() else None
 
     def _how_it_ended(self) -> str:
-        """In words how the process ended, which nobody asked it for."""
+        """How the process ended unexpectedly, in words."""
         with suppress(subprocess.TimeoutExpired):
             self._process.wait(PATIENCE)
         self._end()

@@ -50,7 +50,7 @@ def main(folder: str) -> None:
         if asked.order is Command.END:
             break
     else:
-        # nobody is there any more who would
+        # the other end is gone
         rmtree(folder, ignore_errors=True)
     # what an FMU does when its library goes is its own affair
     os._exit(0)

@@ -23,7 +23,7 @@ class Combination:
 
     `kind`: "gear", where input and output keep one ratio and both turn; "input held" and "output held", where one
     cannot turn and the other can; "tie-up", where neither can; "neutral", where both are free of each other; "split",
-    where they are so but for a machine that turns with both, two speeds are free, and power goes two ways.
+    where they are so except for a machine that turns with both, two speeds are free, and power goes two ways.
     """
 
     closed: tuple[str, ...]

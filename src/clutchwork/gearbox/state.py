@@ -19,7 +19,7 @@ Floats = Mapping[str, float]
 
 @dataclass(frozen=True)
 class GearState:
-    """A gearbox in one gear, per speed 1 and torque 1 at its input, without losses but for `efficiency`.
+    """A gearbox in one gear, per unit speed and torque at its input, without losses except for `efficiency`.
 
     Parameters:
         gear: its name, empty where the closed elements are none of the shift table
@@ -30,7 +30,7 @@ class GearState:
         torques: on the follower of each closed element, as `run["gearbox.A.torque"]` shows it; NaN where several closed
             elements share one in more than one way
         set_torques: on the member at each port of each set
-        set_powers: the same times the speed of the member: what comes out of the set there
+        set_powers: the same times the speed of the member: power leaving the set there
         load: torque on the output from outside
         housing: torque that the box puts on its housing
         circulating: largest power at a port of a set, over that of the input, above 1: power that runs in a circle

@@ -5,7 +5,7 @@ from __future__ import annotations
 import warnings
 from collections.abc import Callable, Sequence
 from dataclasses import field, replace
-from functools import partial
+from functools import cached_property, partial
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -15,7 +15,7 @@ from clutchwork.base.classes import dataclass
 from clutchwork.base.errors import ModelError, ModelWarning
 from clutchwork.base.memoize import memoize
 from clutchwork.declare.layout import FIELDS
-from clutchwork.gradients.finite_differences import Bent, Rebuilt, slope
+from clutchwork.gradients.finite_differences import ROUND_OFF, Bent, Rebuilt, slope
 from clutchwork.gradients.parameters import Tunable, changes
 from clutchwork.results.gradient import NoGradient
 
@@ -27,6 +27,10 @@ Places = NDArray[np.intp]
 
 # points that are remembered
 MOST_KEPT = 8
+# numbers of a piece of a signal, and which of them are amplitudes and phases of its waves
+PIECE, AMPLITUDES, PHASES = 12, [4, 8], [6, 10]
+# words that are sums of fractions, of which small ones may be what is left of large ones
+SUMS = ("basis_value", "mass_value", "element_rate_value", "contact_rate_value", "initial_speed")
 # key of derivatives that hold everywhere
 STRAIGHT = b"straight"
 
@@ -46,9 +50,11 @@ def made(system: System, parameters: Sequence[Tunable], x: Array) -> System:
 
 @memoize
 def turning(system: System) -> tuple[Places, Array]:
-    """Words of start values that start again, as the angle of a cam does, and after how much."""
+    """Words that start again, as the angle of a cam at the start and the phase of a wave do, and after how much."""
     first, number = system.starts["initial_state"] // 8, 0
-    places, turns = list[int](), list[float]()
+    coefficients = system.starts["segment_coef"] // 8 + np.arange(system.arrays["segment_coef"].size).reshape(-1, PIECE)
+    places = coefficients[:, PHASES].ravel().tolist()
+    turns = [2.0 * np.pi] * len(places)
     for element in system.elements:
         begin, kind = first + int(system.arrays["element_state"][number]), type(element)
         own = [(begin + place, state.turn) for place, state in enumerate(kind.states) if state.turn]
@@ -83,10 +89,14 @@ class WordStructure:
 
     def is_that_of(self, words: Array) -> bool:
         """Whether other words are built alike: they have the same length, and the same words that are not numbers."""
-        if len(words) != len(self.words):
-            return False
-        fixed = ~self.is_number
-        return np.array_equal(words.view(np.int64)[fixed], self.words.view(np.int64)[fixed])
+        places, known = self._fixed
+        return len(words) == len(self.words) and np.array_equal(words.view(np.int64)[places], known)
+
+    @cached_property
+    def _fixed(self) -> tuple[Places, NDArray[np.int64]]:
+        # words that are not numbers
+        places = np.flatnonzero(~self.is_number)
+        return places, self.words.view(np.int64)[places]
 
 
 @dataclass(frozen=True, eq=False)
@@ -121,12 +131,12 @@ class Assembled:
         """Derivatives at a point, and whether they are those of all points."""
         pinned, columns, problems, straight = self._pinned(x), list[Array](), list[str](), True
         here = self._beside(pinned, None, x)
-        there = partial(self._beside, pinned, here)
+        there, noise = partial(self._beside, pinned, here), self._noise(here)
         for number in self.numbers:
             one = self.parameters[number]
             own = abs(float(x[number]))
             try:
-                found = slope(partial(_along, there, x, number), here, own, one.compared(own), one.reach)
+                found = slope(partial(_along, there, x, number), here, own, one.compared(own), one.reach, noise)
             except Bent as bent:
                 problems.append(f"{one.name} = {x[number]:g} {one.unit}: {bent}")
                 continue
@@ -136,6 +146,19 @@ class Assembled:
             raise NoGradient(problems)
         slopes = np.stack(columns, axis=1)
         return slopes, straight and self._is_plane(x, here, slopes, there)
+
+    def _noise(self, words: Array) -> Array:
+        """Round-off of words beyond that of their own size."""
+        noise = np.zeros(len(words))
+        for name in SUMS:
+            first = self.system.starts[name] // 8
+            own = slice(first, first + self.system.arrays[name].size)
+            noise[own] = ROUND_OFF * np.abs(words[own]).max(initial=0.0)
+        # a wave that begins where it is zero
+        first, waves = self.system.starts["input_value"] // 8, self.system.arrays["segment_coef"].reshape(-1, PIECE)
+        own = slice(first, first + self.system.arrays["input_value"].size)
+        noise[own] = ROUND_OFF * np.abs(waves[:, AMPLITUDES]).max(initial=0.0)
+        return noise
 
     def _is_plane(self, x: Array, here: Array, slopes: Array, there: Callable[[Array], Array]) -> bool:
         """Whether two more points lie on the plane through the words at one."""

@@ -52,11 +52,13 @@ def _at_knots(
     Parameters: first, the word of the first piece; run, its begin and end [s].
     """
     acts: Mask = np.asarray(pieces[:, :4].any(axis=1) | pieces[:, [4, 8]].any(axis=1))
-    at_zero = (pieces[1:, 0] == 0.0) & ~pieces[1:, [4, 8]].any(axis=1) & acts[1:] & acts[:-1]
-    for piece in (np.flatnonzero(at_zero) + 1).tolist():
+    # a run may begin at one, where it does not matter what was before
+    goes_on = np.append(False, acts[:-1]) | (bounds[:-1] == run[0])
+    at_zero = (pieces[:, 0] == 0.0) & ~pieces[:, [4, 8]].any(axis=1) & acts & goes_on
+    for piece in np.flatnonzero(at_zero).tolist():
         moved: Mask = np.any(slopes.matrix[slopes.within(first + PIECE * piece, 1)] != 0.0, axis=0)
         time = float(bounds[piece])
-        if moved.any() and run[0] < time < run[1]:
+        if moved.any() and run[0] <= time < run[1]:
             what = f"{system.inputs[number].name} is 0 at its knot at {time:g} s, where it begins or ends"
             yield time, f"{what}; give that point a value", moved
 

@@ -20,6 +20,7 @@ from clutchwork.gradients.exact import Exact
 from clutchwork.gradients.parameters import parameters
 from clutchwork.gradients.settled import SIDES
 from clutchwork.gradients.task import GradientTask, GradientValues
+from clutchwork.laws.bases.formula import FormulaLaw
 from clutchwork.results.channels import channels
 from clutchwork.results.gradient import Gradient
 from clutchwork.run.control import controllers
@@ -217,7 +218,7 @@ def differentiable(
     """What a Driveline or a System gives as a function of some of its numbers, with exact derivatives.
 
     Parameters: t_end [s], or with a unit, options and their fields by name are those of `simulate`; of, values as
-    `outputs` of `sweep`: a signal at the end, `cw.at`, `cw.lock`, `cw.maximum`, `cw.integral`, `cw.squared_jerk` ...;
+    `outputs` of `sweep`: a signal at the end, `cw.at`, `cw.lock`, `cw.maximum`, `cw.integral`, `cw.jerk` ...;
     by, names of numbers as in `System.changed`: "c1.gain", "engine.inertia", of a table "c1.pressure.values", all
     ordinates, "c1.pressure.values[3]", the third one, "c1.pressure.values[2:]", all from the second on, and
     "c1.pressure.times[3]", the time of the third knot;
@@ -239,7 +240,7 @@ def differentiable(
 def made(
     system: System, of: Any, by: Any, t_end: float, options: Options, threads: int | None, side: Any = None
 ) -> Differentiable:
-    """The function for what is asked for."""
+    """The function for the requested outputs."""
     if side is not None and side not in SIDES:
         raise UseError("gradient", [f"side is {quote(side)}: give 'left' or 'right', or leave it out"])
     if options.method == "fixed":
@@ -278,6 +279,13 @@ def _refuse(system: System, outputs: Mapping[str, Output]) -> None:
     problems += [
         f"{one.name} is set by a Python function or an FMU, which has no derivative; take a table of what it gives"
         for one in controllers(system.inputs)
+    ]
+    laws = ((contact.name, contact.friction) for contact in system.contacts)
+    jumps = ((name, law.jump()) for name, law in laws if isinstance(law, FormulaLaw))
+    problems += [
+        f"{name}.friction {jump}, where no event is, so that derivatives would be wrong; make it continuous"
+        for name, jump in jumps
+        if jump
     ]
     if problems:
         raise UseError("gradient", problems)

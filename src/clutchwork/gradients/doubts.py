@@ -109,7 +109,8 @@ class Doubts:
                 yield Doubt(f"{why}; ask before or behind it", self._only(number), self._moving_events(line.at))
 
     def _asked_at_knots(self) -> Iterator[Doubt]:
-        for number, line in enumerate(self.lines):
+        knots = self.run.primal.knots
+        for number, line in enumerate(self.lines if len(knots.times) or len(knots.meets) else ()):
             if line.at is not None and (self._ends_at_knot(line.at) or self._bends(line)):
                 why = f"{line.name} is asked for at a knot that moves, {line.at:.9g} s; ask before or behind it"
                 yield Doubt(why, self._only(number), self._moving_knots())
@@ -118,7 +119,7 @@ class Doubts:
         return bool(self.run.primal.bends_at(line.columns, np.array([line.at]))[0])
 
     def _ends_at_knot(self, time: float) -> bool:
-        """Whether the run ends at an instant, and a knot that moves is there: nobody sees whether it bends."""
+        """Whether the run ends at the instant of a moving knot, whose bend is not visible."""
         is_end = time >= self.run.primal.t_end * (1.0 - SAME)
         return is_end and bool(np.any(np.abs(self.point.knots.meets - time) <= SAME * (1.0 + abs(time))))
 

@@ -28,7 +28,7 @@ Array = NDArray[np.float64]
 
 # variants of one call without derivatives
 MOST_AT_ONCE = 256
-# reach of a number with no neighbour, right beside zero compared with its own scale all the same
+# reach of a number without a neighbour, next to zero on its own scale
 FAR = 1e300
 # directions that a run carries at the cost of one
 AT_ONCE = 8
@@ -182,7 +182,7 @@ class Exact:
         return [Line(name, value, 0.0, none, none, self.task.t_end) for name, value in values]
 
     def lines(self, point: RunPoint) -> tuple[Run, list[Line]]:
-        """A run, and what is asked of it with derivatives as they are."""
+        """A run, and its requested outputs with plain derivatives."""
         run, outputs = self._refined(point, len(self.task.labels)), self.task.outputs
         return run, lines(run, outputs, self.task.labels, self._asked, self.runs.sizes(point.x))
 

@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from functools import partial
 from typing import NamedTuple
 
 import numpy as np
 from numpy.polynomial.polynomial import polyval
 from numpy.typing import NDArray
 
+from clutchwork.gradients import several_steps
 from clutchwork.gradients.functional import Functional
 from clutchwork.gradients.held_torques import torque_at_limit
 from clutchwork.gradients.instants import add_shift, add_turn
@@ -44,7 +46,7 @@ PLACES = np.vander(np.arange(17) * WIDTH, PARTS + 1, increasing=True)
 
 
 class Located(NamedTuple):
-    """Where an extreme is: its value, its step, the place in it, and its sign in what is asked for."""
+    """Where an extreme is: its value, its step, the place in it, and its sign in the output."""
 
     value: float
     step: int
@@ -52,7 +54,7 @@ class Located(NamedTuple):
     sign: float
     rough: float = 0.0  # last coefficient of the polynomial over the length of the step, of which slopes are off
     is_flat: bool = False  # all of the step is as large
-    is_level: bool = False  # but for round-off
+    is_level: bool = False  # except for round-off
     # whether all values from the begin of the step to it, and from it to the end, are as large
     holds: tuple[bool, bool] = (False, False)
 
@@ -104,7 +106,7 @@ class CandidateSteps(NamedTuple):
 
 
 def _near(one: Extreme, steps: Steps, values: Array) -> Iterator[CandidateSteps]:
-    """For each sign of what is asked for the steps that may reach its largest value."""
+    """For each sign of the output the steps that may reach its largest value."""
     coefficients = np.einsum("nki,ni->nk", steps.basis, values)
     samples = coefficients @ PLACES.T
     # between samples a polynomial rises by less than an eighth of its second difference
@@ -225,7 +227,10 @@ def kinks(primal: Primal, found: list[Located]) -> tuple[float, ...]:
 def add_extreme(primal: Primal, one: Extreme, found: Located, into: Functional) -> None:
     """How an extreme changes: the signal at its instant, and that instant where it is that of an event."""
     steps, sign = primal.steps, 1.0 if one.kind == "minimum" else found.sign
-    end, whole = found.begins, [(found.step, sign * steps.at(found.step, found.share))]
+    end, place = found.begins, (found.step, found.share)
+    if end is None and not found.is_flat:
+        place = several_steps.top(primal, partial(_rows_of, primal, one), *place)
+    whole = [(place[0], sign * steps.at(*place))]
     inside = end is None or not 0 < end < len(steps)
     if not inside and primal.between[0][end] == SMOOTH:
         whole = _of_bend(primal, one, int(end or 0), sign) or whole
@@ -244,6 +249,11 @@ def add_extreme(primal: Primal, one: Extreme, found: Located, into: Functional) 
             add_shift(primal, int(end or 0), sign * rate, into)
         elif _jumps(primal, one, int(end or 0)):
             add_turn(primal, one.signal, int(end or 0), sign * rate, into)
+
+
+def _rows_of(primal: Primal, one: Extreme, first: int, last: int) -> Array:
+    """Its signal in all rows from a first to a last step."""
+    return signal_at(primal, one.signal, primal.steps.rows[first : last + 1].ravel())
 
 
 def _jumps(primal: Primal, one: Extreme, end: int) -> bool:

@@ -22,6 +22,8 @@ NARROWER = 1 / 6
 MOST_TRIES = 5
 # what two orders may differ by, of the size of the derivative
 ALLOWED = 1e-9
+# of a value, and of a sum of the largest part of it
+ROUND_OFF = 4e-16
 CENTRAL = tuple(k for k in range(-4, 5) if k)
 UPWARD = tuple(range(7))
 
@@ -41,29 +43,31 @@ class Rebuilt(Exception):  # noqa: N818, it is caught where it is raised
     """A function is another one there."""
 
 
-def slope(function: Callable[[float], Array], here: Array, own: float, scale: float, reach: float) -> Difference:
+def slope(
+    function: Callable[[float], Array], here: Array, own: float, scale: float, reach: float, noise: Array
+) -> Difference:
     """The derivative of a function at 0, by differences over steps of the scale of its argument.
 
     Parameters: function, raises ModelError where it is not defined, so that one side is asked alone, and Rebuilt where
     it is another one; here, its value at 0; own, the size of the number that its argument changes; scale, what that is
-    compared with, or 0: right beside zero steps of its own size leave round-off; reach, how far it is the same. Bent
-    where it has no derivative.
+    compared with, or 0: right beside zero steps of its own size leave round-off; reach, how far it is the same; noise,
+    round-off of its values that are left of larger ones. Bent where it has no derivative.
     """
     size = max(own, scale) or 1.0
     try:
-        return _slope(function, here, size, reach)
+        return _slope(function, here, size, reach, noise)
     except Bent:
         if own in {0.0, size}:
             raise
-        return _slope(function, here, own, reach)
+        return _slope(function, here, own, reach, noise)
 
 
-def _slope(function: Callable[[float], Array], here: Array, scale: float, reach: float) -> Difference:
+def _slope(function: Callable[[float], Array], here: Array, scale: float, reach: float, noise: Array) -> Difference:
     width = min(WIDTH * scale, reach / 5)
     for number in range(MOST_TRIES):
-        found = _tried(function, CENTRAL, here, width)
+        found = _tried(function, CENTRAL, here, width, noise)
         if found is None and number >= MOST_TRIES - 2:
-            sides = (_tried(function, tuple(sign * k for k in UPWARD), here, width) for sign in (1, -1))
+            sides = (_tried(function, tuple(sign * k for k in UPWARD), here, width, noise) for sign in (1, -1))
             # of a kink both sides would have one
             found = next(filter(None, sides), None) if not _is_defined(function, width) else None
         if found is not None:
@@ -95,22 +99,24 @@ def _why(function: Callable[[float], Array], width: float) -> str:
     return f"the driveline jumps or has a kink here; {remedy}"
 
 
-def _tried(function: Callable[[float], Array], places: tuple[int, ...], here: Array, width: float) -> Difference | None:
+def _tried(
+    function: Callable[[float], Array], places: tuple[int, ...], here: Array, width: float, noise: Array
+) -> Difference | None:
     try:
         values = np.array([here if k == 0 else function(k * width) for k in places])
     except (ModelError, Rebuilt):
         return None
-    return _fitted(places, values, here, width)
+    return _fitted(places, values, here, width, noise)
 
 
-def _fitted(places: tuple[int, ...], values: Array, here: Array, width: float) -> Difference | None:
+def _fitted(places: tuple[int, ...], values: Array, here: Array, width: float, noise: Array) -> Difference | None:
     """The derivative from values beside one, None where two orders do not agree."""
     rises = values - here
     fine, coarse = weights(places, len(places)), weights(places, len(places) - 2)
     value = fine @ rises / width
     other = coarse @ rises / width
     size = np.abs(rises).max(axis=0) / (width * max(map(abs, places)))
-    noise = 4e-16 * np.abs(values).max(axis=0)
+    noise = np.maximum(noise, ROUND_OFF * np.abs(values).max(axis=0))
     # the mean of both sides would do for a kink
     apart = np.abs(_kink(places) @ rises / width) if places == CENTRAL else 0.0
     if np.any(np.maximum(np.abs(value - other), apart) > ALLOWED * size + 10 * noise / width):

@@ -37,7 +37,7 @@ TOUCHED = 1e-5
 # so many changes within so long [s] are refused
 CROWD, CROWDED = 6, 1e-4
 BY_NAME = {name: number for number, (name, _) in CAUSES.items()}
-BORDERS = ("line", "law", "process")
+BORDERS = ("line", "law", "process", "flip")
 IMPACT, JAM, DRIVEN = BY_NAME["impact"], BY_NAME["jam"], (BY_NAME["input"], BY_NAME["other event"])
 AT = {name: column for column, (name, _) in enumerate(EVENT)}
 
@@ -52,6 +52,12 @@ def guards(effect: str) -> tuple[int, ...]:
 def borders() -> tuple[int, ...]:
     """Numbers in the core of the guards where another piece of a law, a table or a process begins."""
     return tuple(number for number, (name, _) in enumerate(derivatives().guards) if name in BORDERS)
+
+
+@cache
+def loads() -> tuple[int, ...]:
+    """Numbers in the core of the guards of loads that follow torques."""
+    return tuple(number for number, (name, _) in enumerate(derivatives().guards) if name == "flip")
 
 
 def together(grazes: Array, decided: Array) -> bool:
@@ -71,7 +77,8 @@ def decided(grazes: Array, events: Array) -> Array:
     What passes from one piece of a law or a table to the next, and what bounces, may do so slowly: the motion goes on
     as it was, or jumps by less the slower it is.
     """
-    known = [number for number, kind in enumerate(grazes[:, KIND].tolist()) if kind in guards("decides")]
+    deciders = guards("decides")
+    known = [number for number, kind in enumerate(grazes[:, KIND].tolist()) if kind in deciders]
     if not known:
         return grazes[:0]
     is_change = (events[:, AT["from"]] != events[:, AT["to"]]) | (events[:, AT["cause"]] == JAM)
@@ -104,7 +111,9 @@ def moving_apart(
     met = np.concatenate([decided, grazes[np.isin(grazes[:, KIND], borders())]])
     for graze in np.unique(met[met[:, DIFFERENCE] * sizes > APART], axis=0):
         time, name = float(graze[TIME]), component(system, int(graze[COMPONENT]), int(graze[KIND]))
-        if abs(time - begin) <= SAME * (1.0 + abs(begin)):
+        if graze[KIND] in loads() and graze[INDEX] == np.inf:
+            yield time, f"the load of {name} is zero from {time:.9g} s on, and a little more turns it either way"
+        elif abs(time - begin) <= SAME * (1.0 + abs(begin)):
             yield time, f"{name} begins where it goes from one piece to another; move a start value, or that border"
         else:
             what = f"two events at {time:.9g} s, of which {name} is one, move apart with the numbers; separate them"
@@ -124,7 +133,7 @@ def jumping_together(system: System, grazes: Array, sizes: float) -> Iterator[tu
 
 
 def crowded(events: Array, contacts: Sequence[str]) -> Iterator[tuple[float, str]]:
-    """Contacts that lock and let go again and again within an instant, which no derivative survives."""
+    """Contacts that lock and break away repeatedly within an instant, where no derivative exists."""
     if len(events) < CROWD:
         return
     changed = _locking(events)
@@ -163,12 +172,12 @@ def _struck(hit: Array, contacts: Sequence[str]) -> Iterator[tuple[float, str]]:
 def decided_at_knots(
     events: Array, grazes: Array, knots: Array, contacts: Sequence[str]
 ) -> Iterator[tuple[float, str]]:
-    """Contacts that lock or let go where a signal bends: what comes first, the knot or the event, is open.
+    """Contacts that lock or break away where a signal bends: whether the knot or the event comes first is undecided.
 
     Parameters: knots, instants of all [s]. Where a signal jumps the knot is what makes them do so.
     """
     changed = _locking(events)
-    close = changed[_near(changed[:, AT["time"]], knots)]
+    close = changed[_near(changed[:, AT["time"]], knots)] if len(changed) else changed
     jumps = grazes[grazes[:, KIND] < 0, TIME] if len(close) else knots
     for event in close:
         time = float(event[AT["time"]])

@@ -26,7 +26,7 @@ def add_shift(primal: Primal, step: int, share: float, into: Functional) -> None
 
 
 def add_turn(primal: Primal, capacity: str, step: int, share: float, into: Functional) -> None:
-    """Add a share of the derivative of the instant at which a capacity jumps, as its torque turns round."""
+    """Add a share of the derivative of the instant at which a capacity jumps as its torque reverses."""
     steps, known = primal.steps, primal.columns["contact_capacity"]
     columns, rows = primal.forms[capacity].weights(primal.rows[:1]).columns, steps.rows[step]
     if len(columns) != 1 or not known.start <= columns[0] < known.stop:

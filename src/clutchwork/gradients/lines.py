@@ -50,9 +50,9 @@ def lines(run: Run, outputs: Mapping[str, Output], labels: Sequence[str], asked:
     made, names = list[Line](), iter(labels)
     for one in outputs.values():
         if isinstance(one, (AtTimes, AtEnd)) and run.is_forward:
-            columns = run.primal.forms[one.signal].weights(run.primal.rows[:1]).columns
+            columns, values, matrix = trace(run, one)
             times = one.times if isinstance(one, AtTimes) else (run.primal.t_end,)
-            for time, value, own in zip(times, *trace(run, one), strict=True):
+            for time, value, own in zip(times, values, matrix, strict=True):
                 size = _size(run.primal, columns, time)
                 made.append(Line(next(names), float(value), size, own, own, time, time, columns))
         else:

@@ -1,4 +1,4 @@
-"""What is asked of a run, as values and how they change: one measure for each number of each output."""
+"""Requested values of a run and how they change: one measure for each number of each output."""
 
 from __future__ import annotations
 
@@ -14,7 +14,17 @@ from clutchwork.gradients.functional import Functional
 from clutchwork.gradients.primal import Primal
 from clutchwork.gradients.signals import add_signal, signal_at
 from clutchwork.results.forms import LOCKED
-from clutchwork.sweeps.outputs import AtEnd, AtTimes, Extreme, Integral, Output, SquaredJerk, When
+from clutchwork.sweeps.outputs import (
+    PER_WINDOW,
+    AtEnd,
+    AtTimes,
+    Extreme,
+    FeltJerk,
+    Integral,
+    Output,
+    SquaredJerk,
+    When,
+)
 
 Array = NDArray[np.float64]
 
@@ -57,6 +67,8 @@ def measures(primal: Primal, one: Output, asked: Context) -> Iterator[Measure]:
             yield _when(primal, one, asked)
         case Extreme():
             yield _extreme(primal, one)
+        case FeltJerk():
+            yield _felt(primal, one, asked.begin)
         case SquaredJerk():
             yield _jerk(primal, one, one.signal in asked.massless)
 
@@ -112,6 +124,19 @@ def _extreme(primal: Primal, one: Extreme) -> Measure:
         size=float(np.abs(values).max(initial=0.0)),
         is_least=one.kind == "minimum",
     )
+
+
+def _felt(primal: Primal, one: FeltJerk, begin: float) -> Measure:
+    """The largest of the second differences of a speed, docs/theory/jerk.md (1)."""
+    times = one.times(begin, primal.t_end)
+    if len(times) <= 2 * PER_WINDOW:
+        return Measure(float("nan"), (), primal.t_end)
+    rows = np.searchsorted(primal.times, times)
+    jerks = one.felt(signal_at(primal, one.signal, rows))
+    place, into = int(np.argmax(np.abs(jerks))), primal.functional()
+    weights = np.sign(jerks[place]) / one.window**2 * np.array([1.0, -2.0, 1.0])
+    add_signal(primal, one.signal, rows[place : place + 2 * PER_WINDOW + 1 : PER_WINDOW], weights, into)
+    return Measure(float(abs(jerks[place])), (into,), float(times[place + 2 * PER_WINDOW]))
 
 
 def _jerk(primal: Primal, one: SquaredJerk, is_massless: bool) -> Measure:

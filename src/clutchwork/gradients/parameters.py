@@ -19,6 +19,7 @@ from clutchwork.base.quote import quote
 from clutchwork.declare.node import Law, Signal
 from clutchwork.declare.schema import common_ends
 from clutchwork.model.changes import Owners, Target, changeable, field_of, named, target, targets_of, unit_of
+from clutchwork.model.parts import held_positions
 
 if TYPE_CHECKING:
     from clutchwork.assembly.system import System
@@ -81,6 +82,7 @@ def _meant(model: Model, owners: Owners, name: Any) -> list[Tunable]:
     """The numbers of a name."""
     aim = target(owners, name)
     if aim is not None:
+        _refuse_held(model, aim, name)
         return [_number(aim, name)]
     parts = ENTRY.fullmatch(name) if isinstance(name, str) else None
     table = target(owners, parts[1]) if parts else None
@@ -95,6 +97,15 @@ def _meant(model: Model, owners: Owners, name: Any) -> list[Tunable]:
         together = "; points of a jump move under the number of the first one" if parts[2] != "values" else ""
         raise Unfit(f"{name} is not there: entries are counted from 1, {found[0].name} to {found[-1].name}{together}")
     return chosen
+
+
+def _refuse_held(model: Model, aim: Target, name: str) -> None:
+    """Refuse where a crank holds a mass that has no position of its own."""
+    for element in model.elements:
+        if id(aim.owner) in held_positions([element]) and aim.path == ("angle",):
+            raise Unfit(
+                f"{name} follows from {element.name}, which holds it; take numbers of {element.name} or its shaft"
+            )
 
 
 def _range(found: list[Tunable], given: str, name: str) -> list[Tunable]:

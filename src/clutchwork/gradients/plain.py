@@ -18,7 +18,7 @@ from clutchwork.gradients.refined import Seen, WithinSteps, refined
 from clutchwork.gradients.steps import NO_STEPS, Steps
 from clutchwork.results.forms import all_reads
 from clutchwork.sweeps.batch import CoreOutputs
-from clutchwork.sweeps.outputs import AtEnd, AtTimes, Extreme, Integral, SquaredJerk, When
+from clutchwork.sweeps.outputs import AtEnd, AtTimes, Extreme, FeltJerk, Integral, SquaredJerk, When
 from clutchwork.sweeps.parts import PARTS, squared_jerk
 
 if TYPE_CHECKING:
@@ -104,7 +104,7 @@ class PlainRuns:
     @cached_property
     def on_grid(self) -> bool:
         """Whether any output is read at instants."""
-        return bool(self.wanted.signals(AtEnd, AtTimes, Integral)) or not self.in_steps
+        return bool(self.wanted.signals(AtEnd, AtTimes, FeltJerk, Integral)) or not self.in_steps
 
     def values(self, systems: Sequence[bytes], forms: Sequence[Mapping[str, Form]]) -> Array:
         """Outputs of each of the bytes, with the forms of its signals; NaN for what there is not."""
@@ -175,6 +175,8 @@ class PlainRuns:
             return [float(value) for value in np.where(there, values[rows], np.nan)]
         if not reached:
             return [float("nan")]
+        if isinstance(one, FeltJerk):
+            return [float(one.largest(values[np.searchsorted(self.wanted.grid, self.wanted.felt(one))]))]
         return [float(values[-1] - values[0] if isinstance(one, Integral) else values[-1])]
 
 
@@ -203,7 +205,7 @@ def _nothing(columns: Sequence[int]) -> tuple[Array, Array]:
 def _by_variant(parts: Any, count: int, width: int) -> list[tuple[Array, Array]]:
     """Times and rows of each variant, from what each thread has."""
     found = [(np.zeros(0), np.zeros((0, width)))] * count
-    for variants, counts, times, rows, _ in parts:
+    for variants, counts, times, rows, *_ in parts:
         ends = np.cumsum(counts)
         for variant, begin, end in zip(variants.tolist(), (ends - counts).tolist(), ends.tolist(), strict=True):
             found[variant] = times[begin:end], rows[begin:end]

@@ -1,7 +1,7 @@
 """Steps in which a signal bends or jumps without an event, which polynomials miss, so that they are split there.
 
-A contact of a dependent set reaches its capacity, or a capacity depends on the direction of its torque, which turns
-round. docs/theory/gradients.md (19)
+A contact of a dependent set reaches its capacity, or a capacity depends on the direction of its torque, which reverses.
+docs/theory/gradients.md (19)
 """
 
 from __future__ import annotations
@@ -46,7 +46,7 @@ ROUGH = 1e-6
 CUTS, ROUNDS = 8, 6
 # shortest parts, of a step, and [s]
 SHORTEST, SHORTEST_TIME = 1e-3, 3e-8
-# capacities that differ by more on both sides of a torque that turns round jump there, of the larger one
+# capacities that differ by more on both sides of a reversing torque jump there, relative to the larger one
 JUMP = 1e-9
 
 
@@ -186,7 +186,7 @@ def _zero(f: Callable[[Array], Array]) -> float | None:
 
 
 def _turns(steps: Steps, capacity: Array, torque: Array) -> Iterator[tuple[int, float]]:
-    """Steps in which a torque turns round and a capacity jumps with it, and where."""
+    """Steps in which a torque reverses and a capacity jumps with it, and where."""
     ends, size = capacity[:, [0, -1]], np.abs(capacity).max(axis=1)
     turns = (torque[:, 0] > 0.0) != (torque[:, -1] > 0.0)
     for step in np.flatnonzero(turns & (np.abs(np.diff(ends, axis=1)[:, 0]) > JUMP * size)).tolist():

@@ -82,7 +82,7 @@ class Runs:
 
     @cached_property
     def wanted(self) -> CoreOutputs:
-        """What is asked of each run."""
+        """The requested outputs of each run."""
         return CoreOutputs.of(self.task.system, self.task.options, self.task.outputs, self.task.t_end)
 
     @cached_property
@@ -103,10 +103,14 @@ class Runs:
 
     def sizes(self, x: Array) -> Array:
         """Sizes of the numbers at a point."""
-        own = np.abs(x)
-        compared = [one.compared(value) for one, value in zip(self.task.parameters, own.tolist(), strict=True)]
-        found: Array = np.maximum(own, compared)
+        found: Array = np.maximum(np.abs(x), np.where(x == 0.0, *self._compared))
         return found
+
+    @cached_property
+    def _compared(self) -> tuple[Array, Array]:
+        # with what changes of the numbers are compared at zero, and elsewhere
+        at_zero, elsewhere = ([one.compared(value) for one in self.task.parameters] for value in (0.0, 1.0))
+        return np.array(at_zero), np.array(elsewhere)
 
     # ------------------------------------------------------------------------------------------------- with derivatives
 
@@ -120,7 +124,7 @@ class Runs:
             return point
         run, steps, jerks = self.plain.with_jerks(point.system, self.signals.at(x))
         self._refuse_stopped(run.status, run.detail)
-        return self._with_grid(point._replace(steps=steps.long().inside(), events=run.events[:, 0], jerks=jerks))
+        return self._with_grid(point._replace(steps=steps.covering().inside(), events=run.events[:, 0], jerks=jerks))
 
     def forward(self, point: RunPoint) -> Run:
         """A run with derivatives by all numbers."""

@@ -152,7 +152,7 @@ class Settling:
         return np.array([max(abs(line.value), line.size) for line in self.lines])
 
     def _is_one(self, one: Array, other: Array, sizes: Array) -> Mask:
-        """Derivatives by numbers of some sizes that are the same but for the tolerance of the runs."""
+        """Derivatives by numbers of some sizes, equal to the tolerance of the runs."""
         allowed = ALIKE + BY_TOLERANCE * self.task.options.rtol
         values = self._line_sizes[:, None] / sizes
         found: Mask = np.abs(one - other) <= allowed * np.maximum(np.maximum(np.abs(one), np.abs(other)), values)

@@ -14,7 +14,7 @@ from clutchwork.assembly.provenance import PROBES
 from clutchwork.assembly.wiring import wiring
 from clutchwork.base.classes import dataclass
 from clutchwork.base.errors import ModelError
-from clutchwork.gradients.finite_differences import Bent, slope
+from clutchwork.gradients.finite_differences import ROUND_OFF, Bent, slope
 from clutchwork.gradients.words import Words
 from clutchwork.results.channels import channels
 from clutchwork.results.forms import is_of_structure
@@ -84,11 +84,13 @@ class SignalsAt:
         made = {name: np.zeros((len(rows), len(x))) for name in self._open}
         forms = {name: self.at(x)[name] for name in made}
         here = _evaluated(forms, rows)
+        sizes = np.abs(here.reshape(len(made), -1)).max(axis=1, initial=0.0)
+        noise = ROUND_OFF * np.repeat(sizes, len(here) // len(made))
         for number in self.within:
             one = self.words.parameters[number]
             own, along = abs(float(x[number])), partial(self._along, x, number, tuple(made), rows)
             try:
-                found = slope(along, here, own, one.compared(own), one.reach).value
+                found = slope(along, here, own, one.compared(own), one.reach, noise).value
             except Bent as bent:
                 raise NoGradient([f"{one.name} = {x[number]:g} {one.unit}: {bent}"]) from None
             for name, line in zip(made, found.reshape(len(made), -1), strict=True):

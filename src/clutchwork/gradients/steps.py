@@ -49,6 +49,21 @@ class Steps:
         jumps = np.diff(np.cumsum(self.jumps)[kept], prepend=0) > 0
         return Steps(self.begin[kept], self.length[kept], self.share[kept], self.rows[kept], jumps)
 
+    def covering(self) -> Steps:
+        """The same, each with the short ones before it, and behind it, from which nothing separates it."""
+        found, ends = self.long(), self.end
+        is_long = self.length > LEAST * (1.0 + np.abs(self.begin))
+        # where a row of steps begins between which nothing jumps
+        chain, kept = np.cumsum(self.jumps), np.flatnonzero(is_long)
+        begin, end = found.begin.copy(), found.end.copy()
+        for step in np.flatnonzero(~is_long).tolist():
+            place = int(np.searchsorted(kept, step))
+            if place < len(kept) and chain[kept[place]] == chain[step]:
+                begin[place] = min(begin[place], self.begin[step])
+            elif place > 0 and chain[kept[place - 1]] == chain[step]:
+                end[place - 1] = ends[step]
+        return Steps(begin, end - begin, found.share, found.rows, found.jumps)
+
     def inside(self) -> Steps:
         """The same steps with rows that stay away from their ends; their places are not known yet."""
         away = np.clip(APART * (1.0 + np.abs(self.begin)) / self.length, INSIDE, MOST_INSIDE)

@@ -10,10 +10,11 @@ from clutchwork.gradients.signals import signal_at
 from clutchwork.sweeps.outputs import AtEnd, AtTimes
 
 Array = NDArray[np.float64]
+Places = NDArray[np.intp]
 
 
-def trace(run: Run, one: AtTimes | AtEnd) -> tuple[Array, Array]:
-    """Values and derivatives of a signal at its instants, or at the end, of a forward run."""
+def trace(run: Run, one: AtTimes | AtEnd) -> tuple[Places, Array, Array]:
+    """Columns, values and derivatives of a signal at its instants, or at the end, of a forward run."""
     primal, tangents = run.primal, run.tangents
     rows = np.searchsorted(primal.times, one.times if isinstance(one, AtTimes) else [primal.t_end])
     known, matrix = primal.forms[one.signal].weights(primal.rows[rows]), np.zeros((len(rows), primal.numbers))
@@ -21,4 +22,4 @@ def trace(run: Run, one: AtTimes | AtEnd) -> tuple[Array, Array]:
         matrix += line[:, None] * tangents[rows, column]
     if one.signal in primal.bent:
         matrix += primal.bent[one.signal][rows]
-    return signal_at(primal, one.signal, rows), matrix
+    return known.columns, signal_at(primal, one.signal, rows), matrix

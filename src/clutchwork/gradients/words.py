@@ -129,20 +129,24 @@ class Chart:
             system = made(known.system, others, x[rest]) if others else known.system
         except ModelError:
             return None
-        # other inertias may make other speeds independent
-        if not self.holds(words_of(system), x) or system.independent != known.system.independent:
-            return None
         words = words_of(system).copy()
+        # other inertias may make other speeds independent
+        if system is not known.system and not (
+            known.structure.is_that_of(words) and system.independent == known.system.independent
+        ):
+            return None
+        if not self._follows(x):
+            return None
         for number, places in self.written.items():
             words[places] = x[number]
         for table in self.tables:
             table.write(words, x)
         return words
 
-    def holds(self, words: Array, x: Array) -> bool:
-        """Whether the words at a point are of this structure, and follow alike: at zero a number may be at a kink."""
+    def _follows(self, x: Array) -> bool:
+        """Whether the words at a point follow alike: at zero a number may be at a kink."""
         changed = np.sign(x) != self._signs
-        alike = not (changed.any() and changed[list(self.fixed)].any()) and self.assembled.structure.is_that_of(words)
+        alike = not (changed.any() and changed[list(self.fixed)].any())
         return alike and all(table.holds(x) for table in self.tables)
 
     @cached_property

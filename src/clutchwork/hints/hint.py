@@ -81,7 +81,7 @@ def shown(value: float, unit: str) -> str:
 
 
 def more_than(factor: float) -> str:
-    """A factor above 0 in three digits that is not below it, but for round-off."""
+    """A factor above 0 in three digits, rounded up except for round-off."""
     place = 10.0 ** (2 - floor(log10(factor)))
     return f"{ceil(factor * place * (1.0 - 1e-9)) / place:.4g}"
 

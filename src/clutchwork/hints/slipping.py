@@ -1,4 +1,4 @@
-"""Contacts that are pressed as hard as they ever are, and slip all the same."""
+"""Contacts that slip although they are at their largest load."""
 
 from __future__ import annotations
 

@@ -18,7 +18,7 @@ class Dahl(Law):
 
     With `x = elastic sign(slip)/kinetic`; the coefficient is `elastic`. With an exponent below 1 it is full within a
     finite slip and stays so until the slip turns. Use it for hysteresis that does not depend on
-    the rate, such as in rolling bearings. It has no static coefficient, and it drifts under a load that swings.
+    the rate, such as in rolling bearings. It has no static coefficient, and it drifts under an oscillating load.
 
     Source: P. R. Dahl 1976, doi:10.2514/3.61511.
     """

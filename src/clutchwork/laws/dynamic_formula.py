@@ -7,7 +7,8 @@ from typing import TYPE_CHECKING, Any, ClassVar
 
 from clutchwork.declare import Role, State, component, formula
 from clutchwork.laws.bases.expression import SLIP
-from clutchwork.laws.bases.formula import NAME, SLIPS, TAKEN, FormulaLaw, Found, no_number, where
+from clutchwork.laws.bases.formula import NAME, SLIPS, TAKEN, FormulaLaw, Found, no_number
+from clutchwork.laws.bases.jumps import where
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -33,8 +34,9 @@ class DynamicFormula(FormulaLaw):
     """Coefficient as an expression over slip and states of its own, whose rates are expressions too; it never sticks.
 
     `rates={"z": "s*(v - abs(v)*z/(mu_k + (mu_s - mu_k)*exp(-(v/v_s)**2)))"}` and the expression `z` are LuGre friction
-    without damping. Use it for bristles that are in no list. The slip `v` has a sign; states begin at zero, where a
-    contact without load puts them again, and should be of the size of a coefficient: stiffness times deflection.
+    without damping. Use it for a bristle model that is not built in. The slip `v` has a sign; states begin at zero,
+    where a contact without load puts them again, and should be of the size of a coefficient: stiffness times
+    deflection.
 
     Equations: docs/theory/friction-laws.md.
     """
@@ -58,6 +60,9 @@ class DynamicFormula(FormulaLaw):
     def own_states(self) -> tuple[State, ...]:
         """One state for each rate, by its name."""
         return tuple(State(name, "1", "state of the formula", span=SPAN) for name in self.rate_texts())
+
+    def slips(self) -> tuple[float, ...]:
+        return (*(-slip for slip in SLIPS[:0:-1]), *SLIPS)
 
     def problems(self) -> Found:
         rates: Any = self.rates
@@ -89,7 +94,7 @@ def _is_state(name: Any) -> bool:
 
 
 def _jump(program: Program, place: dict[str, float]) -> Iterator[Found]:
-    """A coefficient that jumps with the sign of the slip, so that nothing rests."""
+    """A coefficient that jumps with the sign of the slip, with which nothing can come to rest."""
     after, before = (program.run({**place, SLIP: slip})[program.coefficient] for slip in (1e-9, -1e-9))
     if abs(after - before) > JUMP * max(abs(after), abs(before), 1e-3):
         fault = f"jumps from {before:g} to {after:g} where the slip changes its sign"
@@ -97,7 +102,7 @@ def _jump(program: Program, place: dict[str, float]) -> Iterator[Found]:
 
 
 def _drives(program: Program, at: dict[str, float]) -> Found:
-    """A coefficient that drives once the states have settled, where they do."""
+    """A coefficient with which friction drives in steady sliding."""
     settled = _settled(program, at)
     if settled is None or not at[SLIP]:
         return []

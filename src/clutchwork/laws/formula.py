@@ -6,7 +6,8 @@ from typing import TYPE_CHECKING
 
 from clutchwork.declare import Role, component
 from clutchwork.laws.bases.expression import SLIP
-from clutchwork.laws.bases.formula import ROUND_OFF, SLIPS, FormulaLaw, Found, no_number, where
+from clutchwork.laws.bases.formula import ROUND_OFF, SLIPS, FormulaLaw, Found, no_number
+from clutchwork.laws.bases.jumps import where
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -19,7 +20,7 @@ class Formula(FormulaLaw):
     """Kinetic coefficient as an expression over the slip, static coefficient at rest; it sticks exactly.
 
     `cw.Formula("mu_k + (mu_s - mu_k)*exp(-v/v_s)", mu_k=0.3, mu_s=0.4, v_s="0.1 rad/s")`: names that are not inputs are
-    numbers of the law, which are given by keyword, with units or without. Use it for a law that is in no list, from a
+    numbers of the law, which are given by keyword, with units or without. Use it for a law that is not built in, from a
     paper or a supplier. The slip `v` is that in the direction of sliding, never below zero, and `at_rest` defaults to
     the coefficient at `v = 0`.
 
@@ -39,7 +40,7 @@ class Formula(FormulaLaw):
 
 
 def _negative(program: Program, registers: list[float], at: dict[str, float]) -> Found:
-    """A coefficient that drives."""
+    """A negative coefficient, with which friction would drive."""
     kinetic = registers[program.coefficient]
     if kinetic >= -ROUND_OFF:
         return []

@@ -10,7 +10,7 @@ from clutchwork.laws.bases.tables import Found, Tabulated, continued, crossing, 
 class FrictionTable(Tabulated):
     """Kinetic coefficient over abs(slip) as a table, linear or smooth, and one static coefficient above all of it.
 
-    Use it for measured linings at one temperature. It never goes below zero, however far it is continued.
+    Use it for measured linings at one temperature. It never goes below zero, however far it is extrapolated.
 
     Source of the smooth one: F. N. Fritsch, R. E. Carlson 1980, doi:10.1137/0717021.
     """

@@ -13,7 +13,7 @@ class LuGre(StribeckCurve):
     """Bristles that bend: `d elastic/dt = stiffness (slip - abs(slip) elastic/s(slip))`.
 
     The coefficient is `elastic + damping (d elastic/dt)/stiffness + viscous slip`. Use it for frictional lag, varying
-    break-away and stick-slip under control. It drifts under a load that swings below break-away; `ElastoPlastic`,
+    break-away and stick-slip under control. It drifts under a load that oscillates below break-away; `ElastoPlastic`,
     `Leuven` and `GMS` do not.
 
     Source: C. Canudas de Wit, H. Olsson, K. J. Åström, P. Lischinsky 1995, doi:10.1109/9.376053.

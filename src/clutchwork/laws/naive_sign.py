@@ -1,4 +1,4 @@
-"""Stribeck friction without a stick phase, which no solver gets past."""
+"""Stribeck friction without a stick phase, on which every solver stalls."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from clutchwork.laws.bases.stribeck import StribeckCurve
 class NaiveSign(StribeckCurve):
     """Coefficient `sign(slip) s(slip) + viscous slip`, zero at zero slip.
 
-    For demonstration alone: where the contact should lock, the torque jumps between both signs from step to step, and
+    For demonstration only: where the contact should lock, the torque jumps between both signs from step to step, and
     the run ends with the status "chatter". Use `Stribeck`, which sticks exactly.
     """
 

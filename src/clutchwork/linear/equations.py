@@ -110,7 +110,7 @@ def _row(motion: Motion, made: StateColumns, over: Array, rates: Array) -> Array
     speed = motion.speeds @ base
     acceleration = motion.speeds @ slopes + motion.tied @ (motion.tied_slopes() @ base)
     torque = motion.follow(local.torque) @ base
-    # what the change of a ratio makes of the torque along its second way
+    # effect of the change of a ratio on the torque along its second way
     torque[ties.second] -= ties.torque[:, None] * (motion.ratios @ base)
     load = motion.M @ acceleration + system.mass_prescribed @ (motion.p @ slopes) - motion.D.T @ torque
     elements = system.counts["elements"]

@@ -35,17 +35,17 @@ class NaturalMode:
 
     @property
     def frequency(self) -> float:
-        """Frequency at which it swings [Hz]; zero where it does not swing."""
+        """Frequency of its oscillation [Hz]; zero if it does not oscillate."""
         return abs(self.eigenvalue.imag) / (2.0 * math.pi)
 
     @property
     def natural_frequency(self) -> float:
-        """Frequency at which it would swing undamped [Hz]."""
+        """Undamped frequency [Hz]."""
         return abs(self.eigenvalue) / (2.0 * math.pi)
 
     @property
     def damping(self) -> float:
-        """Damping ratio: 1 where it does not swing and dies away, below zero where it grows; NaN of a free motion."""
+        """Damping ratio: 1 if it decays without oscillation, below zero if it grows; NaN of a free motion."""
         size = abs(self.eigenvalue)
         return -self.eigenvalue.real / size if size > 0.0 else math.nan
 
@@ -56,12 +56,12 @@ class NaturalMode:
 
     @property
     def kind(self) -> str:
-        """In one word: swings, dies away, grows or free."""
+        """In one word: oscillates, decays, grows or free."""
         if self.eigenvalue == 0.0:
             return "free"
         if self.eigenvalue.imag:
-            return "swings, grows" if self.eigenvalue.real > 0.0 else "swings"
-        return "grows" if self.eigenvalue.real > 0.0 else "dies away"
+            return "oscillates, grows" if self.eigenvalue.real > 0.0 else "oscillates"
+        return "grows" if self.eigenvalue.real > 0.0 else "decays"
 
     def __repr__(self) -> str:
         """As a list shows it."""
@@ -91,7 +91,7 @@ class NaturalModes(Sequence[NaturalMode]):
 
     @property
     def swinging(self) -> tuple[NaturalMode, ...]:
-        """Those that swing."""
+        """Those that oscillate."""
         return tuple(mode for mode in self if mode.frequency > 0.0)
 
     def __str__(self) -> str:
@@ -181,13 +181,13 @@ def _clean(value: complex) -> complex:
 
 
 def _line(number: int, mode: NaturalMode) -> tuple[str, ...]:
-    swings = mode.frequency > 0.0
+    oscillates = mode.frequency > 0.0
     return (
         str(number),
         mode.kind,
-        f"{mode.frequency:.4g} Hz" if swings else "",
-        f"{mode.natural_frequency:.4g} Hz" if swings else "",
-        f"{100.0 * mode.damping:.3g} %" if swings else "",
+        f"{mode.frequency:.4g} Hz" if oscillates else "",
+        f"{mode.natural_frequency:.4g} Hz" if oscillates else "",
+        f"{100.0 * mode.damping:.3g} %" if oscillates else "",
         f"{mode.time_constant:.4g} s" if math.isfinite(mode.time_constant) else "",
         _moving(mode, 5),
     )

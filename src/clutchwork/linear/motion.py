@@ -83,7 +83,7 @@ class Motion:
         return np.array(made, dtype=float)
 
     def tied_slopes(self) -> Array:
-        """What a change of the base columns makes of the accelerations of the ties, the slopes of all else apart.
+        """Effect of a change of the base columns on the accelerations of the ties, apart from all other slopes.
 
         docs/theory/linearisation.md (10)
         """

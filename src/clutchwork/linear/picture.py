@@ -26,7 +26,7 @@ MOST_MODES, MOST_SHAFTS = 6, 24
 
 
 def picture(lin: LinearSystem, path: str | Path | None = None) -> Figure:
-    """Eigenvalues on the left, shapes of the slowest modes that swing on the right; written to `path` when given."""
+    """Eigenvalues on the left, shapes of the slowest oscillating modes on the right; written to `path` when given."""
     shapes = [mode for mode in lin.modes.swinging if mode.shape][:MOST_MODES]
     shapes = shapes or [mode for mode in lin.modes if mode.shape][:MOST_MODES]
     with figure_of(max(LEAST_HEIGHT, 14.0 + PANEL * len(shapes)), formulas=False) as figure:
@@ -74,8 +74,8 @@ def _shape(axes: Axes, mode: NaturalMode, *, last: bool) -> None:
     axes.axhline(0.0, color="#404040", linewidth=0.6)
     axes.set_ylim(-1.15, 1.15)
     axes.grid(visible=False, axis="x")
-    swings = f"{mode.frequency:.3g} Hz, damping {100.0 * mode.damping:.2g} %"
-    axes.set_title(swings if mode.frequency > 0.0 else f"{mode.kind}, {mode.time_constant:.3g} s", loc="left")
+    words = f"{mode.frequency:.3g} Hz, damping {100.0 * mode.damping:.2g} %"
+    axes.set_title(words if mode.frequency > 0.0 else f"{mode.kind}, {mode.time_constant:.3g} s", loc="left")
     axes.set_xticks(np.arange(len(names)), names if last else [""] * len(names))
     if last and max(map(len, names)) * len(names) > 60:
         axes.tick_params(axis="x", rotation=60)

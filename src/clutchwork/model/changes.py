@@ -162,7 +162,7 @@ def field_of(aim: Target) -> tuple[Any, Spec]:
     for name in aim.path[:-1]:
         thing = getattr(thing, name)
     value = getattr(thing, aim.path[-1])
-    # angles that nobody gave count from 0
+    # angles that are not given count from 0
     if value is None and isinstance(thing, Node) and aim.path[-1] == "angle":
         value = 0.0
     return value, _spec(thing, aim.path[-1])

@@ -9,13 +9,15 @@ from typing import Any
 
 from clutchwork.base.errors import Problem, near
 from clutchwork.base.quote import listed, quote
-from clutchwork.declare.node import Component, Entry, Law, Node, ThermalNode
-from clutchwork.declare.ports import ports
+from clutchwork.declare.node import Component, Domain, Entry, Law, Node, ThermalNode
+from clutchwork.declare.ports import directions, ports
 from clutchwork.declare.schema import REGISTRY, Role, specs
 from clutchwork.declare.wording import path_of
 from clutchwork.model.fields import is_sound, object_problems
 from clutchwork.model.numbers import At
 from clutchwork.model.thermal import Within
+
+SLIPS = {Domain.ROTATION: "rad/s", Domain.TRANSLATION: "m/s"}
 
 
 def component_problems(component: Component, at: At | None = None, *, sound: bool = False) -> Iterator[Problem]:
@@ -34,6 +36,16 @@ def component_problems(component: Component, at: At | None = None, *, sound: boo
     # what an element asks of its law is only asked once both make sense
     for name, message, remedy in () if found else component.law_problems():
         yield at.inner(name).problem(message, remedy=remedy)
+    yield from () if found else _slip_problems(component, at)
+
+
+def _slip_problems(component: Component, at: At) -> Iterator[Problem]:
+    """A friction law that is written for the other kind of motion."""
+    law = component.friction
+    if isinstance(law, Law):
+        for unit in {SLIPS[way.domain] for way in directions(component)}:
+            for name, message, remedy in law.slip_problems(unit):
+                yield at.inner("friction").inner(name).problem(message, remedy=remedy)
 
 
 def type_problem(kind: Any, at: At) -> Problem:

@@ -300,7 +300,7 @@ def _tables(value: Any, spec: Spec, at: At) -> Iterator[Problem]:
 
 
 def _data(value: Any, spec: Spec, at: At) -> Iterator[Problem]:
-    """Whoever reads it says what is wrong with it."""
+    """Mistakes of it are reported by its reader."""
     if value is None or value == "":
         yield at.problem("is missing", quote(value), spec.doc)
 

@@ -31,7 +31,7 @@ def kinematics(
     rows = list(model.rigid_rows())
     solved = order(model.inertia, places)
     echelon = eliminate((row.coefficients for row in rows), solved, traced=False)
-    # what contradicting gears leave is looked at all the same
+    # what contradicting gears leave is checked nevertheless
     problems += _contradictions(model, rows, echelon)
     sound = not problems
     made = _solve(model, echelon)

@@ -180,7 +180,7 @@ def initial_speeds(model: Mechanism, made: Kinematics, prescribed: Sequence[floa
             echelon.add(tie)
             used[name] = tie
     for node in rest:
-        # all speeds are known: those that nobody gave follow
+        # all speeds are known: those not given follow
         if len(used) == len(made.independent):
             break
         row = made.speeds[node]
@@ -272,7 +272,7 @@ def _problem(model: Mechanism, node: int, guilty: list[str], excess: Fraction) -
     remedy = "correct one of them, or remove this one: it then follows from the others"
     whole = model.nodes[node].name.rpartition(".")[0]
     if node >= len(model.nodes) - model.inner and whole:
-        # nobody wrote this speed: the gear of a composite did
+        # this speed was not given, it follows from the gear of a composite
         message = f"follows from the start of {quote(whole)}, and {message}"
         remedy = "give the speed of one side alone at the start: the other side then follows"
     return Problem(model.node_label(node), "speed", message, f"{float(speed):g} {unit}", remedy)

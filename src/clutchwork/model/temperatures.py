@@ -1,4 +1,4 @@
-"""Temperatures that cannot be kelvin: whoever writes 20 means degrees Celsius."""
+"""Temperatures that cannot be kelvin: 20 is meant in degrees Celsius."""
 
 from __future__ import annotations
 

@@ -41,7 +41,7 @@ def quiet_data(system: System, t_end: float, options: Options, wanted: PageReque
 
 
 def wanted_of(drag: Any, sliders: Any, show: Any) -> PageRequest:
-    """What is asked for, by names."""
+    """The requested items, by name."""
     return PageRequest(_list(drag), _list(sliders), _list(show))
 
 

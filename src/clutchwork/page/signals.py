@@ -64,7 +64,7 @@ def output_of(system: System, wiring: Wiring) -> str:
 
 
 def _driven(system: System) -> set[str]:
-    """Shafts and masses whose motion is prescribed: nobody feels it."""
+    """Shafts and masses whose motion is prescribed, which no passenger feels."""
     found: Sequence[Any] = system.source.elements if system.source else ()
     return {part.shaft.name for part in found if type(part).kind.startswith("prescribed_")}
 
@@ -72,7 +72,7 @@ def _driven(system: System) -> set[str]:
 def panels(
     known: Channels, wiring: Wiring, wanted: Sequence[str] | None, output: str, felt: bool = True
 ) -> list[PagePanel]:
-    """What is shown: what is asked for, or speeds, slips, torques, heats and temperatures; the output last.
+    """The signals shown: those requested, or speeds, slips, torques, heats and temperatures; the output last.
 
     Parameters: felt, whether acceleration and jerk of the output are shown without being asked for.
     """

@@ -192,7 +192,7 @@ def _number(aim: Target, name: str, text: str) -> float:
 
 
 def _with_words(system: System, slider: Slider, bytes_of: Bytes) -> Slider:
-    """Words that any value changes, and what each value makes of them; values that are refused are left out."""
+    """Words that any value changes, and their content for each value; refused values are left out."""
     lines, kept = list[Words](), list[float]()
     refused = ""
     own = words_of(system, bytes_of)

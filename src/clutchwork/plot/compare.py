@@ -43,7 +43,7 @@ def compare(
     speeds, loads and torques of contacts and temperatures that all runs have. labels, of runs that are not in a
     mapping, by default the names of their models, or run 1, run 2 ...; unit, path, zoom [s], events, measured, units
     and width as in `run.plot`; colour, "run" for one colour for each run and dashes for signals, or "signal" for the
-    other way round.
+    reverse.
 
     Models may differ. A signal that one of the runs does not have is an `UnknownName` error that names the run; a
     wildcard takes what each of them has. Needs matplotlib.

@@ -109,7 +109,7 @@ def _trace(curve: Curve, side: Side, look: dict[str, Any], row: int, values: Arr
     # a graphics card draws dashes of curves with many points as noise
     line = {"color": look["color"], "width": 1.6, "dash": dash if dashed else "solid"}
     if dashed:
-        # else corners are left out that are seen when somebody zooms
+        # else corners are left out that show when zoomed
         line["simplify"] = False
     # a line over a single instant would not be seen
     mode = "lines" if np.ptp(curve.time) else "lines+markers"

@@ -100,7 +100,7 @@ def _legend(axes: Axes, panel: Panel, handles: Sequence[Any]) -> None:
 
 
 def curve_looks(curves: Sequence[Curve], runs: Sequence[str], colour: str) -> list[dict[str, Any]]:
-    """Colour and dashes of each curve: of one run by signal; of several by run and signal, or the other way round."""
+    """Colour and dashes of each curve: of one run by signal; of several by run and signal, or vice versa."""
     signals = list(dict.fromkeys(curve.signal for curve in curves))
     if len(runs) < 2:
         own = dict(zip(signals, looks(len(signals)), strict=True))

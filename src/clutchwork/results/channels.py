@@ -16,6 +16,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
+from clutchwork.assembly.shared_states import state_scales
 from clutchwork.assembly.wiring import HOUSING, Branch, GearRow, Wiring, wiring
 from clutchwork.base.classes import dataclass
 from clutchwork.base.errors import UnknownName, near
@@ -110,6 +111,7 @@ class Channels(Mapping[str, Channel]):
         for branch in self._wiring.sensors:
             yield from self._sensor(branch)
         yield from self._thermal()
+        yield from self._state_sums()
         start = self._start("input")
         for index, (name, unit) in enumerate(self._wiring.inputs):
             if name not in self._wiring.unused:
@@ -143,6 +145,10 @@ class Channels(Mapping[str, Channel]):
         name = f"{branch.name}.{branch.component.supply}"
         yield f"{name}_power", _column(self._start("supply_power") + number, "W")
         yield f"{name}_energy", _column(self._start("supply_energy") + number, "J")
+        # what it draws and does not give its shaft
+        drawn = RowEntry(self._start("supply_power") + number)
+        given = Total(self._total("torque", branch).indices, negative=True)
+        yield f"{branch.name}.loss", Channel("W", Powers((drawn, Power(given, self._rate(branch)))))
 
     def _whole(self, first: Branch) -> Iterator[tuple[str, Channel]]:
         """Power and work of an element that acts along several ways: the sums of all."""
@@ -186,6 +192,34 @@ class Channels(Mapping[str, Channel]):
     def _thermal(self) -> Iterator[tuple[str, Channel]]:
         for name, unit, columns in heat_channels.affine(self._wiring):
             yield name, Channel(unit, Affine(*columns))
+
+    def _state_sums(self) -> Iterator[tuple[str, Channel]]:
+        """Signals that are weighted sums of states."""
+        known = dict(self._state_columns())
+        branches = [branch for branch in (*self._wiring.elements, *self._wiring.contacts) if not branch.number]
+        owners = (*(branch.component for branch in branches), *(one.component for one in self._wiring.processes))
+        for component in (*owners, *self._wiring.composites):
+            for one in component.state_sums():
+                terms = [(*known[f"{component.name}.{name}"], weight) for name, weight in one.weights.items()]
+                yield f"{component.name}.{one.name}", Channel(one.unit, self._sum(terms, one.offset))
+
+    def _sum(self, terms: list[tuple[int, float, float]], offset: float) -> Form:
+        if len(terms) == 1:
+            ((column, scale, weight),) = terms
+            return Affine(column, scale * weight, offset)
+        vector = np.zeros(self._wiring.row_size)
+        for column, scale, weight in terms:
+            vector[column] += scale * weight
+        return Dot.of(vector)
+
+    def _state_columns(self) -> Iterator[tuple[str, tuple[int, float]]]:
+        """Column and scale of each state by name."""
+        first = self._start("state")
+        for branch in (*self._wiring.elements, *self._wiring.contacts):
+            yield from ((f"{branch.component.name}.{name}", (first + k, 1.0)) for name, _, k in branch.states)
+        for process in self._wiring.processes:
+            for (name, _, k), scale in zip(process.states, state_scales(process.component), strict=True):
+                yield f"{process.name}.{name}", (first + k, float(scale))
 
     def _total(self, what: str, branch: Branch) -> Total:
         """Torque or work of a branch and of the parts that count as it."""

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import astuple, fields
 from typing import TYPE_CHECKING, Any, overload
 
@@ -16,12 +16,16 @@ from clutchwork.base.plural import columns
 from clutchwork.base.quote import listed, quote
 from clutchwork.declare.calls import explained, explained_methods
 from clutchwork.declare.layout import CAUSES, EVENT, MODES
+from clutchwork.declare.node import Domain
+from clutchwork.declare.ports import directions
 
 if TYPE_CHECKING:
     from pathlib import Path
 
+    from clutchwork.assembly.system import System
 
-# units of the fields of an event that have one
+
+# units of the fields of an event that have one, of contacts on shafts; and those that differ on masses
 UNITS = {
     "time": "s",
     "slip_acceleration": "rad/s2",
@@ -30,6 +34,7 @@ UNITS = {
     "energy_before": "J",
     "energy_after": "J",
 }
+ON_MASSES = {"rad/s2": "m/s2", "N m": "N"}
 
 
 @dataclass(frozen=True)
@@ -41,9 +46,9 @@ class Event:
     before: str  # forward, backward, locked or open
     after: str
     cause: str  # a word of CAUSES in clutchwork.declare.layout
-    slip_acceleration: float  # rad/s2 after the event
-    torque_before: float  # N m on the follower
-    torque_after: float  # N m on the follower
+    slip_acceleration: float  # rad/s2 after the event, on masses m/s2
+    torque_before: float  # N m on the follower, on masses N
+    torque_after: float  # N m on the follower, on masses N
     energy_before: float  # J, kinetic
     energy_after: float  # J, kinetic
 
@@ -57,10 +62,24 @@ class Event:
 class Events(Sequence[Event]):
     """The events of a run in order of time; print it to read it."""
 
-    def __init__(self, events: Sequence[Event] = (), contacts: Sequence[str] | None = None) -> None:
-        """Events in order of time; `contacts` are the names that `of` knows, by default those of the events."""
+    def __init__(self, events: Sequence[Event] = (), contacts: Mapping[str, Domain] | None = None) -> None:
+        """Events in order of time.
+
+        Parameters: contacts, those that `of` knows, by default those of the events, and the motion that each is in.
+        """
         self._events = tuple(events)
-        self._contacts = None if contacts is None else tuple(contacts)
+        self._contacts = contacts
+
+    @property
+    def units(self) -> dict[str, str]:
+        """Units of the fields that have one; both where some contacts are on shafts, some on masses."""
+        kinds = {(self._contacts or {}).get(event.element, Domain.ROTATION) for event in self} or {Domain.ROTATION}
+        units = {}
+        for name, unit in UNITS.items():
+            line = ON_MASSES.get(unit, unit)
+            both = [one for kind, one in ((Domain.ROTATION, unit), (Domain.TRANSLATION, line)) if kind in kinds]
+            units[name] = " or ".join(dict.fromkeys(both))
+        return units
 
     @overload
     def __getitem__(self, index: int) -> Event: ...
@@ -90,7 +109,7 @@ class Events(Sequence[Event]):
         "backward", "locked" or "open"; cause, a word of the guide to results. UnknownName, a KeyError, with near names
         where there is none of that name.
         """
-        known = [event.element for event in self] if self._contacts is None else self._contacts
+        known = [event.element for event in self] if self._contacts is None else [*self._contacts]
         if element and element not in known:
             remedy = f"contacts are {listed(dict.fromkeys(known))}" if known else "the model has no contacts"
             raise UnknownName(f"no contact {quote(element)}{near(element, known, remedy)}")
@@ -121,7 +140,10 @@ class Events(Sequence[Event]):
 
     def __str__(self) -> str:
         """A table for reading."""
-        head = ("time s", "element", "from", "to", "cause", "slip acc rad/s2", "torque before N m", "torque after N m")
+        units = self.units
+        numbers = {"slip acc": "slip_acceleration", "torque before": "torque_before", "torque after": "torque_after"}
+        words = (f"{word} {units[name]}" for word, name in numbers.items())
+        head = ("time s", "element", "from", "to", "cause", *words)
         lines = [tuple(_cells(event)) for event in self]
         return columns([head, *lines], right={0, 5, 6, 7}) if lines else "no events"
 
@@ -141,15 +163,16 @@ class Events(Sequence[Event]):
                 for item in fields(Event)
             }
         )
-        frame.attrs["units"] = dict(UNITS)
+        frame.attrs["units"] = self.units
         return frame
 
     def _repr_html_(self) -> str:
         """A table for a notebook."""
         from clutchwork.base import html
 
-        head = ("time, s", "element", "from", "to", "cause", "slip acceleration, rad/s2")
-        torques = ("torque before, N m", "torque after, N m")
+        units = self.units
+        head = ("time, s", "element", "from", "to", "cause", f"slip acceleration, {units['slip_acceleration']}")
+        torques = (f"torque before, {units['torque_before']}", f"torque after, {units['torque_after']}")
         lines = map(_cells, self)
         return html.table((*head, *torques), lines, right={0, 5, 6, 7}) if self else html.paragraph("no events")
 
@@ -158,18 +181,24 @@ class Events(Sequence[Event]):
         """Write every field of every event; the head of each column has its unit."""
         from clutchwork.base.writing import put_csv
 
-        names = [item.name for item in fields(Event)]
-        heads = [f"{name} [{UNITS[name]}]" if name in UNITS else name for name in names]
+        names, units = [item.name for item in fields(Event)], self.units
+        heads = [f"{name} [{units[name]}]" if name in units else name for name in names]
         lines = ([_exact(value) for value in astuple(event)] for event in self)
         put_csv(fitting("run.events.to_csv", path, "events.csv", [".csv"]), [heads, *lines])
 
 
-def from_rows(rows: NDArray[np.float64], contacts: Sequence[str]) -> Events:
+def contact_domains(system: System) -> dict[str, Domain]:
+    """The contacts of a System in order, and the motion that each is in."""
+    return {contact.name: directions(contact)[0].domain for contact in system.contacts}
+
+
+def from_rows(rows: NDArray[np.float64], contacts: Mapping[str, Domain]) -> Events:
     """Name the numbers of the core."""
     at = {name: column for column, (name, _) in enumerate(EVENT)}
     # contacts that change in one instant stand in their own order
     order = np.lexsort((rows[:, at["contact"]], rows[:, at["time"]]))
-    return Events([_event(rows[i], at, contacts) for i in order], contacts)
+    names = [*contacts]
+    return Events([_event(rows[i], at, names) for i in order], contacts)
 
 
 def _event(row: NDArray[np.float64], at: dict[str, int], contacts: Sequence[str]) -> Event:

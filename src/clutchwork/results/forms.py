@@ -257,9 +257,9 @@ class Power(Form):
 
 @dataclass(frozen=True)
 class Powers(Form):
-    """Sum of powers."""
+    """Sum of powers, each a product or a number of the row."""
 
-    parts: tuple[Power, ...]
+    parts: tuple[Power | RowEntry, ...]
 
     def __call__(self, rows: Rows) -> Array:
         powers = [part(rows) for part in self.parts]

@@ -25,7 +25,7 @@ if TYPE_CHECKING:
     from clutchwork.results.recorded import Recorded
 
 NEUTRAL = "neutral"
-# position of a sleeve past the tips of the teeth: one that is blocked stands there but for round-off
+# position of a sleeve past the tips of the teeth: one that is blocked is there up to round-off
 BEYOND = 1e-6
 # torque of elements that counts as drag, as a share of what they carry mostly
 DRAG = 0.01

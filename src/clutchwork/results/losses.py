@@ -33,7 +33,7 @@ T = TypeVar("T", bound="LossTable")
 class Loss:
     """Energies of one element or shaft over a window [J], or mean powers [W].
 
-    `taken = given + stored + heat`, but for what the integration missed.
+    `taken = given + stored + heat`, except for integration errors.
     """
 
     element: str

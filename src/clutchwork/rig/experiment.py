@@ -95,7 +95,7 @@ class Result:
 
     @property
     def complete(self) -> bool:
-        """Whether all runs reached their end, but for those that chatter: to show that is what they are there for."""
+        """Whether all runs reached their end, except those that chatter, which are there to show that."""
         return all(run.status == "chatter" for trial in self.trials.values() for run in trial.early)
 
     def __getitem__(self, wanted: str | tuple[str, str]) -> Trajectory:

@@ -119,7 +119,7 @@ def _steps(recording: Recording, stop: float, acted: bool, progress: Told | None
 
 def _grid(recording: Recording, stop: float, times: Array, progress: Told | None) -> None:
     """Record the given instants, all of them up to the stop."""
-    # each stretch ends in a step of its own, so that there are stretches only where somebody is told of them
+    # each stretch ends in a step of its own, so that there are stretches only if progress is reported
     told = progress is not None and len(times) > LONG_GRID
     cuts = range(LARGEST_CHUNK, len(times), LARGEST_CHUNK) if told else ()
     first = 0

@@ -27,7 +27,7 @@ from clutchwork.declare.layout import MODES, STATUSES
 from clutchwork.declare.options import Options
 from clutchwork.declare.wording import say
 from clutchwork.results.channels import channels
-from clutchwork.results.events import Event, Events
+from clutchwork.results.events import Event, Events, contact_domains
 from clutchwork.results.state import State
 from clutchwork.run.control import Control
 from clutchwork.run.input_schedule import Schedule, Tape
@@ -144,7 +144,7 @@ def _system(about: Mapping[str, Any], model: list[bytes], path: str | Path) -> S
         if not model[1]:
             return System.from_bytes(model[0], str(about["system"]))
         with warnings.catch_warnings():
-            # whoever saved the run was warned
+            # the warning was given when the run was saved
             warnings.simplefilter("ignore", ModelWarning)
             return System.of_parts(model, str(path))
     except SystemFormatError as error:
@@ -167,4 +167,4 @@ def _rows(system: System, parts: archive.ArchiveParts, count: int) -> Array:
 def _events(system: System, lines: Any) -> Events:
     kinds: list[type] = [float if kind == "float" else str for kind in Event.__annotations__.values()]
     made = [Event(*(kind(value) for kind, value in zip(kinds, line, strict=True))) for line in lines]
-    return Events(made, [contact.name for contact in system.contacts])
+    return Events(made, contact_domains(system))

@@ -21,7 +21,7 @@ from clutchwork.base.quote import quote
 from clutchwork.declare.calls import explained
 from clutchwork.declare.layout import DONE, INTERRUPTED, NOT_FINITE, REFUSED, STATUSES
 from clutchwork.declare.options import Options, instants
-from clutchwork.results.events import from_rows
+from clutchwork.results.events import contact_domains, from_rows
 from clutchwork.run.begin import advance, begun, reach, row_of, state_of
 from clutchwork.run.control import Control, controllers, guests_of, refuse_guests
 from clutchwork.run.jumps import jump_times
@@ -73,7 +73,7 @@ class Job:
 
         wanted = np.sort(np.atleast_1d(np.asarray(instants(times), dtype=float)))
         with warnings.catch_warnings():
-            # whoever has the run was warned
+            # the owner of the run was warned
             warnings.simplefilter("ignore", StoppedEarly)
             made = trajectory(replace(self, options=self.options.changed({"times": wanted, "dt": None})), None)
         if not made.finished and len(made) < len(wanted):
@@ -140,7 +140,7 @@ def simulate(
 
 
 def _followed(progress: Any, begin: float, t_end: float) -> AbstractContextManager[Told | None]:
-    """What takes the time that is reached; None where nobody asked."""
+    """Callback for the time reached; None if no progress was requested."""
     if progress is None:
         return nullcontext()
     from clutchwork.base.progress import MEASURED, followed
@@ -330,7 +330,7 @@ def _named(job: Job, recording: Recording, seconds: float) -> Trajectory:
         t_end=job.t_end,
         time=recording.times,
         rows=recording.rows,
-        events=from_rows(recording.events, [contact.name for contact in system.contacts]),
+        events=from_rows(recording.events, contact_domains(system)),
         status=STATUSES[status],
         message=message,
         repeat=job.again,

@@ -77,7 +77,7 @@ def element_values(thing: Thing) -> list[str]:
 
 
 def _or_none(item: Any, element: Any) -> Any:
-    """A value, unless it is the default, which nobody needs to read."""
+    """A value, unless it is the default."""
     value = getattr(element, item.name, None)
     return None if item.default is not MISSING and value == item.default else value
 

@@ -71,7 +71,7 @@ class Actuation:
         return self.box.closed_in(gear) if gear in self.box.gears else ()
 
     def only(self, gear: str, with_: ShiftSettings) -> None:
-        """The elements of a gear closed at once, all others open, but for synchronisers, whose gears may wait.
+        """The elements of a gear closed at once, all others open, except synchronisers, whose gears may be preselected.
 
         In neutral the dog clutches of first gear are in, for they cannot mesh while the input turns.
         """

@@ -22,7 +22,7 @@ class Learnt(NamedTuple):
 
 @dataclass(frozen=True)
 class ElementActuator:
-    """How a shift element is commanded, and what its torque makes of it; `cw.shifts.fill_test` measures it.
+    """How a shift element is commanded, and how its torque responds; `cw.shifts.fill_test` measures it.
 
     Parameters:
         signal: of the command, such as "A_valve.current"

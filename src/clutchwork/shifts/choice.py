@@ -45,13 +45,13 @@ class GearChoice:
         return gear if self.schedule is None else self.schedule.gear(gear, now)
 
     def _drive_off(self, now: Measured) -> str:
-        """The gear to drive off in, where the last one was let go and the driver wants to go."""
+        """The gear to drive off in, if the last one was released and the driver wants to go."""
         if not self.let_go or now.throttle <= self.settings.launch_throttle:
             return ""
         return self.next_gear(now)
 
     def next_gear(self, now: Measured) -> str:
-        """The gear to drive off in, empty where none was let go."""
+        """The gear to drive off in, empty if none was released."""
         if self.schedule is None or self.let_go not in self.schedule.ratios:
             return self.let_go
         return self._scheduled(next(iter(self.schedule.ratios)), now)

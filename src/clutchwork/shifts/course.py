@@ -42,7 +42,7 @@ class ExchangeSequence:
         self._profile = Profile(self.one, self.with_, self.do.is_dog(self.one.on))
 
     def torque_change(self, now: Measured) -> float:
-        """What is asked for at the input on top of the driver's torque [N m]."""
+        """Torque requested at the input on top of the driver's [N m]."""
         return (self.torque_factor - 1.0) * (self._loaded if now.demand is None else now.demand)
 
     def step(self, time: float, period: float, now: Measured) -> str:

@@ -131,7 +131,7 @@ def _locks(seen: _Seen) -> Iterator[Finding]:
 
 
 def _let_go(run: Any, seen: _Seen) -> Iterator[Finding]:
-    """Contacts beside the gearbox that let go meanwhile: a lock-up clutch, a tyre, a wheel."""
+    """Contacts beside the gearbox that break away meanwhile: a lock-up clutch, a tyre, a wheel."""
     shift = seen.one.shift
     for branch in run.wiring.contacts:
         name = branch.name

@@ -47,7 +47,7 @@ class EngineLedSequence:
     _held: float = 0.0  # rad/s2, acceleration of the output before
 
     def torque_change(self, _: Measured) -> float:
-        """What is asked for at the input on top of the driver's torque [N m]."""
+        """Torque requested at the input on top of the driver's [N m]."""
         return self._change
 
     def step(self, time: float, period: float, now: Measured) -> str:

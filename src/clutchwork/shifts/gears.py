@@ -39,7 +39,7 @@ def gears_of(run: Recorded, box: Gearbox, prefix: str = "gearbox", *, least: flo
     freewheel overruns. Between gears the box is in neutral where no element carries torque for `least`, and something
     of what both gears share was open; a shift in which the input flies free to its new speed has no neutral.
 
-    Parameters: least, time [s] for which a gear must be held, but for the first one and the last one.
+    Parameters: least, time [s] for which a gear must be held, except the first one and the last one.
     """
     parts = list(gears.gears_of(run, prefix))
     if not parts:

@@ -157,8 +157,8 @@ def allocation(
     """Torques of elements that slip, none below zero, which together make a wanted one; and the share that they miss.
 
     Of those that do the ones with the smallest sum of cost times torque: docs/theory/shifts.md (15). Parameters:
-    wanted, generalised torque; pulls, what torque 1 of each element makes of it; costs, of torque 1; weight, inertia
-    by which what is missed counts.
+    wanted, generalised torque; pulls, what unit torque of each element contributes to it; costs, of torque 1; weight,
+    inertia by which what is missed counts.
     """
     names, size = list(pulls), float(wanted @ np.linalg.solve(weight, wanted))
     best, least = dict.fromkeys(names, 0.0), (1.0, 0.0)

@@ -24,11 +24,11 @@ class InterruptedSequence(ExchangeSequence):
     _change: float = 0.0  # N m
 
     def torque_change(self, _: Measured) -> float:
-        """What is asked for at the input on top of the driver's torque [N m]."""
+        """Torque requested at the input on top of the driver's [N m]."""
         return self._change
 
     def torque(self, passed: float, _: float, now: Measured) -> str:
-        """Torque is taken away, the sleeve comes out; then the input is free."""
+        """Torque is removed, the sleeve disengages; then the input is free."""
         share = share_of(passed, self.with_.torque_time)
         self._change = -share * self._asked(now)
         if share < 1.0:

@@ -108,7 +108,7 @@ class ParallelSequence:
         self._held = {name: self.do.commands.get(name, 0.0) for name in self.one.elements}
 
     def torque_change(self, _: Measured) -> float:
-        """What is asked for at the input on top of the driver's torque [N m]."""
+        """Torque requested at the input on top of the driver's [N m]."""
         return (self.torque_factor - 1.0) * self.loaded + self.lacking
 
     def step(self, time: float, period: float, now: Measured) -> str:

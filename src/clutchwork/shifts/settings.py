@@ -34,7 +34,7 @@ class ShiftSettings:
         launch_speed: that the input keeps while an element drives off, where no converter does [rad/s]; 0: there is one
         launch_gain: proportional gain of that [1/s], far below the slowest mode of the drive shafts
         launch_throttle: above which it drives off
-        let_go: share of the launch speed below which the input is let go before the engine stalls
+        let_go: share of the launch speed below which the input is released before the engine stalls
     """
 
     fill_time: float = 0.1

@@ -151,7 +151,7 @@ class TorqueShare:
     ) -> tuple[dict[str, float], float]:
         """Values by signal, and the throttle that is left for an engine beside the sources, 0 to 1.
 
-        What is asked for is a change of the torque at the input, below zero a reduction: `control.torque_change`.
+        The request is a change of the torque at the input, negative for a reduction: `control.torque_change`.
         Parameters: passed, time since the last call, period, to the next one [s].
         """
         wanted, made, speed = control.torque_change(now), dict[str, float](), now.input_speed

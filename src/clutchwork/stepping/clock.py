@@ -14,7 +14,7 @@ ROUND_OFF = 1e-12
 
 
 def after(time: float, step: float) -> float:
-    """The end of a step [s]: a multiple of it where it is one but for round-off, as a decimal, which knots are."""
+    """The end of a step [s]: a multiple of it where it is one up to round-off, as a decimal, which knots are."""
     end = time + step
     if step > 0.0:
         whole = float(f"{round(end / step) * step:.15g}")

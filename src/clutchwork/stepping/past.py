@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from clutchwork.declare.layout import EVENT
-from clutchwork.results.events import Events, from_rows
+from clutchwork.results.events import Events, contact_domains, from_rows
 from clutchwork.results.external_settings import Held
 from clutchwork.run.failure import StoppedEarly
 from clutchwork.run.input_schedule import Numbers, Tape
@@ -41,7 +41,7 @@ class Past:
     def __init__(self, system: System, start: State | None, begin: float, outside: Outsides) -> None:
         """Parameters: start, the state at the begin, None: the start of the model; begin [s]; what is set there."""
         self._system, self._start, self._begin = system, start, begin
-        self._contacts = [contact.name for contact in system.contacts]
+        self._contacts = contact_domains(system)
         self._tape = Tape(*outside)
         self._marks: WeakKeyDictionary[State, Mark] = WeakKeyDictionary()
         self.rows: list[Array] = []  # of events

@@ -19,7 +19,7 @@ from clutchwork.declare.core import core
 from clutchwork.declare.layout import DONE, EVENT
 from clutchwork.declare.options import Options
 from clutchwork.results.channels import channels
-from clutchwork.results.events import Events, from_rows
+from clutchwork.results.events import Events, contact_domains, from_rows
 from clutchwork.results.state import State
 from clutchwork.run.begin import begun, put, seen, state_of
 from clutchwork.run.settings import without_end
@@ -82,7 +82,7 @@ class Simulators:
         self._stale = np.ones(self._count, dtype=bool)
         self._events = np.empty((0, 0))
         self._signals = signals(self._system)
-        self._contacts = [contact.name for contact in self._system.contacts]
+        self._contacts = contact_domains(self._system)
 
     def _varied(self, call: str, vary: Mapping[str, ArrayLike], count: int) -> list[System]:
         """Systems with other numbers, whose rows are alike."""

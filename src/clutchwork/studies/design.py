@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import replace
+from dataclasses import field, replace
 from functools import cached_property
 from typing import TYPE_CHECKING, Any
 
@@ -19,6 +19,7 @@ from clutchwork.declare.calls import explained, explained_methods
 from clutchwork.model.changes import targets_of
 from clutchwork.studies.distributions import Discrete, Distribution, distribution
 from clutchwork.studies.points import METHODS, Points
+from clutchwork.sweeps.factors import Factors, multiplied
 from clutchwork.sweeps.variants import Variants, Varied
 
 if TYPE_CHECKING:
@@ -45,6 +46,7 @@ class Design:
     seed: int
     base: int  # what was asked for as `count`
     units: Mapping[str, str]  # of SI, where the model is known
+    numbers: Mapping[str, Mapping[str, float]] = field(default_factory=dict)  # that factors multiply
 
     def __len__(self) -> int:
         """Number of variants."""
@@ -63,6 +65,8 @@ class Design:
 
     def _varied(self, name: str, how: Any, share: NDArray[np.float64]) -> Varied:
         unit = self.units.get(name, "")
+        if isinstance(how, Factors):
+            return replace(self._varied(name, how.how, share), numbers=self.numbers.get(name, {}))
         if isinstance(how, Discrete):
             return Varied(name, how.values, how.labels, how.codes(share), unit)
         values = tuple(np.asarray(how.quantile(share) if isinstance(how, Distribution) else how.ppf(share)).tolist())
@@ -70,9 +74,12 @@ class Design:
 
     def in_si(self, model: Model) -> Design:
         """The same design in SI."""
-        unknown = {one.path: str(one) for one in targets_of(model, self.given)[1]}
-        made, units, problems = dict[str, Any](), dict[str, str](), list[str]()
-        for name, how in self.given.items():
+        plain = {name: how for name, how in self.given.items() if not isinstance(how, Factors)}
+        numbers = {name: multiplied(model, name) for name in self.given if name not in plain}
+        unknown = {one.path: str(one) for one in targets_of(model, plain)[1]}
+        made: dict[str, Any] = {**self.given}
+        units, problems = dict.fromkeys(numbers, "1"), list[str]()
+        for name, how in plain.items():
 
             def of(value: Any, name: str = name) -> Any:
                 return _si(model, name, (value,)).values[0]
@@ -90,7 +97,7 @@ class Design:
                     made[name] = how.in_si(of)
         if problems:
             raise UseError("design", problems)
-        return replace(self, given=made, units=units)
+        return replace(self, given=made, units=units, numbers=numbers)
 
     def __getitem__(self, name: str) -> NDArray[Any]:
         """The values of a name, or their labels; KeyError with near names when there is none."""
@@ -159,6 +166,8 @@ def _si(model: Model, name: str, values: tuple[Any, ...]) -> Varied:
 
 def _said(how: Any) -> str:
     """A distribution in words; of scipy.stats its name and numbers."""
+    if isinstance(how, Factors):
+        return f"times {_said(how.how)}"
     if isinstance(how, Distribution | Discrete):
         return str(how)
     numbers = [f"{number:g}" for number in getattr(how, "args", ())]

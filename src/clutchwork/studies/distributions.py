@@ -17,6 +17,7 @@ from clutchwork.base.extras import need
 from clutchwork.base.quote import quote
 from clutchwork.declare.calls import explained
 from clutchwork.declare.units import split
+from clutchwork.sweeps.factors import Factors
 
 Array = NDArray[np.float64]
 InSI: TypeAlias = Callable[[Any], Any]
@@ -174,6 +175,8 @@ def discrete(values: Any, shares: Sequence[float] | None = None) -> Discrete:
 
 def distribution(call: str, name: str, given: Any) -> Any:
     """What a value of a design means: a distribution, (low, high), a list to choose from, or one of scipy.stats."""
+    if isinstance(given, Factors):
+        return Factors(distribution(call, name, given.how))
     if isinstance(given, Distribution | Discrete) or callable(getattr(given, "ppf", None)):
         return given
     if isinstance(given, tuple) and len(given) == 2:

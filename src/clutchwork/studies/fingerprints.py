@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Callable, Iterator
+from dataclasses import replace
 from hashlib import sha256
 from typing import TYPE_CHECKING, Any
 
@@ -54,7 +55,7 @@ def of_source(source: VariantSource) -> tuple[str, Variants]:
     for first in range(0, len(source), TOGETHER):
         part = source.part(first, min(first + TOGETHER, len(source)))
         for one in part.varied:
-            digest.update(one.name.encode())
+            digest.update(one.name.encode() if one.numbers is None else f"times {one.name}".encode())
             digest.update(_values(one))
             ends[one.name] = _ends(one, ends.get(one.name))
     return digest.hexdigest(), Variants(tuple(ends.values()), 0)
@@ -74,7 +75,7 @@ def _ends(one: Varied, before: Varied | None) -> Varied:
     elif before is not None:
         # parts of one source share their objects
         values = tuple({id(value): value for value in values}.values())
-    return Varied(one.name, values, values, np.zeros(0, dtype=np.int64), one.unit)
+    return replace(one, values=values, labels=values, codes=np.zeros(0, dtype=np.int64))
 
 
 def _numbers(one: Varied) -> bool:

@@ -173,7 +173,7 @@ def _complete(output: str, values: NDArray[Any], count: int, missing: float | No
 
 
 def _analysed(names: tuple[str, ...], values: Array, second: bool, level: float, seed: int) -> Any:
-    """What SALib makes of it."""
+    """The indices by SALib."""
     analyze = need("SALib.analyze.sobol", "study", "Sobol indices").analyze
     problem = {"num_vars": len(names), "names": list(names), "bounds": [[0.0, 1.0]] * len(names)}
     with warnings.catch_warnings():

@@ -1,4 +1,4 @@
-"""One process at a time adds to a data set; the system lets go of the lock of one that is killed."""
+"""One process at a time adds to a data set; the system releases the lock of one that is killed."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ def locked(folder: Path) -> Iterator[None]:
         # not on Windows
         import fcntl
     except ImportError:
-        # parts are whole all the same
+        # parts are complete nevertheless
         yield
         return
     with (folder / FILE).open("w") as file:

@@ -36,7 +36,7 @@ def distributions(outputs: Mapping[str, NDArray[Any]], units: Mapping[str, str],
         for place, (name, values) in enumerate(shown.items(), 1):
             axes = figure.add_subplot(rows, min(2, len(shown)), place)
             known = values[np.isfinite(values)]
-            # values that are the same but for round-off are one bar
+            # values that are the same up to round-off are one bar
             same = np.ptp(known) <= 1e-9 * np.abs(known).max()
             axes.hist(known.round(12) if same else known, bins=1 if same else BINS, color=COLOURS[0])
             for share, value in zip(SHARES, np.quantile(known, SHARES), strict=True):

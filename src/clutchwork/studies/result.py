@@ -38,7 +38,7 @@ HEADS = ("output", "unit", "mean", "deviation", "5 %", "median", "95 %", "no val
 @explained_methods("study")
 @dataclass(frozen=True, eq=False)
 class Study:
-    """The data set of a study: a folder with Parquet files, of which only what is asked for is read.
+    """The data set of a study: a folder with Parquet files, of which only the requested part is read.
 
     `found["lock(c1)"]` is a column, one value for each variant that is there, in their order; `found.names` lists the
     outputs, `found.varied` what varies. All columns are `variant`, those, and `status`. The files below `data` are for

@@ -97,7 +97,7 @@ def study(
 
 
 def _silent(done: int) -> None:
-    """Nobody asked."""
+    """No progress was requested."""
 
 
 def _at_once(order: Order, count: int) -> int:

@@ -12,6 +12,7 @@ CALLS = {
     "peak": "",
     "integral": "",
     "squared_jerk": "SHAFT",
+    "jerk": "SHAFT",
     "lock": "NUMBER",
     "break_away": "NUMBER",
 }

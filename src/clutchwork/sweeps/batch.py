@@ -19,13 +19,14 @@ from clutchwork.declare.layout import DONE, INTERRUPTED
 from clutchwork.results.channels import Channels, channels
 from clutchwork.results.forms import LOCKED, all_reads, is_of_structure
 from clutchwork.sweeps.axes import Plan, systems_of
-from clutchwork.sweeps.outputs import AtEnd, AtTimes, Computed, Extreme, Integral, Output, SquaredJerk, When
-from clutchwork.sweeps.parts import PARTS, lacks, squared_jerk, steps_of
+from clutchwork.sweeps.outputs import AtEnd, AtTimes, Computed, Extreme, FeltJerk, Integral, Output, SquaredJerk, When
+from clutchwork.sweeps.parts import PARTS, squared_jerk, steps_of
 
 if TYPE_CHECKING:
     from clutchwork.assembly.system import System
     from clutchwork.declare.options import Options
     from clutchwork.sweeps.system_words import Axis
+    from clutchwork.sweeps.variants import Codes
 
 Array = NDArray[Any]
 Progress = Callable[[int], None]
@@ -34,6 +35,8 @@ Progress = Callable[[int], None]
 MOST_KEPT = 8_000_000
 # variants of one block: enough that threads seldom wait for the last one, few enough to report progress
 MOST_VARIANTS = 2048
+# the same where rows in steps are kept, which are looked at while they are in the cache
+MOST_IN_STEPS = 512
 # rows that a variant is expected to have in steps
 ROWS_EXPECTED = 2000
 # outputs that are looked for within the steps
@@ -103,13 +106,18 @@ class CoreOutputs:
         """Instants of the grid: those asked for, the start of integrals, the end."""
         asked = {time for one in self.outputs.values() if isinstance(one, AtTimes) for time in one.times}
         start = {self.begin} if self.signals(Integral) else set()
+        felt = {time for one in self.outputs.values() if isinstance(one, FeltJerk) for time in self.felt(one).tolist()}
         # one at an event is shown once, from the left, as a run that is asked for it
-        return np.array(sorted(asked | start | {self.t_end}))
+        return np.array(sorted(asked | start | felt | {self.t_end}))
+
+    def felt(self, one: FeltJerk) -> Array:
+        """Instants at which a jerk needs the speed."""
+        return one.times(self.begin, self.t_end)
 
     @cached_property
     def all_signals(self) -> tuple[str, ...]:
         """Signals that any output is made of."""
-        return tuple(dict.fromkeys(self.signals(AtEnd, AtTimes, Integral, *IN_STEPS)))
+        return tuple(dict.fromkeys(self.signals(AtEnd, AtTimes, FeltJerk, Integral, *IN_STEPS)))
 
     @property
     def in_steps(self) -> bool:
@@ -119,9 +127,9 @@ class CoreOutputs:
     @property
     def needs_grid(self) -> bool:
         """Whether rows at instants are needed that the steps do not give."""
-        return bool(self.signals(AtTimes)) or not self.in_steps
+        return bool(self.signals(AtTimes, FeltJerk)) or not self.in_steps
 
-    def kept_as(self, one: AtEnd | AtTimes | Integral) -> str:
+    def kept_as(self, one: AtEnd | AtTimes | FeltJerk | Integral) -> str:
         """The signal that an output is read from."""
         return one.kept_as(self.channels) if isinstance(one, Integral) else one.signal
 
@@ -153,7 +161,8 @@ class Batch:
         """Variants of one block."""
         columns = sorted(all_reads(self.wanted.channels[name].evaluate for name in self.wanted.all_signals))
         rows = len(self.wanted.grid) + (ROWS_EXPECTED if self.wanted.in_steps else 0)
-        return max(1, min(MOST_VARIANTS, MOST_KEPT // (rows * (len(columns) + 1))))
+        most = min(MOST_VARIANTS, MOST_IN_STEPS) if self.wanted.in_steps else MOST_VARIANTS
+        return max(1, min(most, MOST_KEPT // (rows * (len(columns) + 1))))
 
     def run(self, first: int, last: int, progress: Progress | None) -> Block:
         """Variants from first to last."""
@@ -224,10 +233,10 @@ class Batch:
         systems = [system.to_bytes() for system in call.systems]
         threads = min(self.way.threads, max(1, len(call.who) // 2))
         columns, events = np.array(forms.columns, dtype=np.int64), self.wanted.events
-        lacked = lacks(call.systems[0].counts, forms.columns, forms.inside, parts)
+        inside = np.array(sorted(forms.inside), dtype=np.int64) if parts else columns
         return Native(
             *core().sweep(
-                systems, axes, choice, options, self.way.t_end, grid, parts, columns, events, threads, progress, lacked
+                systems, axes, choice, options, self.way.t_end, grid, parts, columns, events, threads, progress, inside
             )
         )
 
@@ -252,7 +261,8 @@ class Native(NamedTuple):
     status: Array
     detail: Array
     rows: Array | None  # of a grid: variants, instants, columns
-    parts: list[tuple[Array, Array, Array, Array, Array]]  # of each thread: variants, counts, times, rows, events
+    # of each thread: variants, counts, times, rows of what is read inside of steps, events, first and last rows
+    parts: list[tuple[Array, Array, Array, Array, Array, Array]]
     raised: BaseException | None
 
 
@@ -281,12 +291,12 @@ class Forms:
         self.columns = sorted(all_reads(form for forms, _ in whole.values() for form in forms))
         in_steps = wanted.signals(*IN_STEPS)
         self.inside = all_reads(form for name, (forms, _) in whole.items() if name in in_steps for form in forms)
-        places = {column: place for place, column in enumerate(self.columns)}
-        self.forms = {name: ([form.over(places) for form in forms], which) for name, (forms, which) in whole.items()}
+        self.forms = _over(self.columns, whole)
+        self.inner = _over(sorted(self.inside), {name: whole[name] for name in in_steps})
 
-    def values(self, name: str, rows: Array, variant: Array) -> Array:
-        """A signal over rows, each of which is of a variant of the block."""
-        forms, which = self.forms[name]
+    def values(self, name: str, rows: Array, variant: Array, inside: bool = False) -> Array:
+        """A signal over rows, each of which is of a variant of the block; `inside`: rows of what is read in steps."""
+        forms, which = (self.inner if inside else self.forms)[name]
         if len(forms) == 1:
             return np.asarray(forms[0](rows))
         found = np.empty(len(rows))
@@ -295,6 +305,12 @@ class Forms:
             mine = codes == code
             found[mine] = form(rows[mine])
         return found
+
+
+def _over(columns: Sequence[int], forms: Mapping[str, tuple[list[Any], Codes]]) -> dict[str, tuple[list[Any], Codes]]:
+    """Forms over rows that have these columns alone."""
+    places = {column: place for place, column in enumerate(columns)}
+    return {name: ([form.over(places) for form in own], which) for name, (own, which) in forms.items()}
 
 
 def _keep_ends(block: Block, call: Call, found: Native) -> None:
@@ -320,7 +336,7 @@ def _from_grid(block: Block, call: Call, forms: Forms, found: Native) -> None:
     variant = np.repeat(call.who, rows.shape[1])
     reached = (found.status == DONE)[:, None] | ~np.isnan(rows).all(axis=2) if rows.shape[2] else None
     for name, one in wanted.outputs.items():
-        if isinstance(one, AtTimes | AtEnd | Integral):
+        if isinstance(one, AtTimes | AtEnd | FeltJerk | Integral):
             signal = wanted.kept_as(one)
             whole = forms.values(signal, _finite(flat), variant).reshape(rows.shape[:2])
             _set_grid(block, call, name, one, wanted, whole, reached)
@@ -342,30 +358,33 @@ def _set_grid(
         return
     out = _place(block, name, values)
     ended = block.status[call.who] == DONE
-    chosen = values[:, -1] - values[:, 0] if isinstance(one, Integral) else values[:, -1]
+    if isinstance(one, FeltJerk):
+        chosen = one.largest(values[:, np.searchsorted(wanted.grid, wanted.felt(one))])
+    else:
+        chosen = values[:, -1] - values[:, 0] if isinstance(one, Integral) else values[:, -1]
     out[call.who[ended]] = chosen[ended]
 
 
 def _from_steps(block: Block, call: Call, forms: Forms, found: Native) -> None:
     """Extremes over the steps, and the same as from a grid where the last row is enough."""
     wanted = forms.wanted
-    for variants, counts, times, rows, _ in found.parts:
+    for variants, counts, times, rows, _, edges in found.parts:
         some = counts > 0
         who, starts = call.who[variants[some]], (np.cumsum(counts) - counts)[some]
         variant = np.repeat(call.who[variants], counts)
-        ends, ended = starts + counts[some] - 1, block.status[who] == DONE
+        ended, first, last = block.status[who] == DONE, edges[some, 0], edges[some, 1]
         for name, one in wanted.outputs.items():
             if isinstance(one, Extreme):
-                values = forms.values(one.signal, rows, variant)
+                values = forms.values(one.signal, rows, variant, True)
                 _place(block, name, values)[who] = one.reduced(values, starts) if len(starts) else ()
             elif isinstance(one, SquaredJerk):
-                jerks = _squared(times, forms.values(one.signal, rows, variant), starts)
+                jerks = _squared(times, forms.values(one.signal, rows, variant, True), starts)
                 _place(block, name, jerks)[who[ended]] = jerks[ended]
             elif isinstance(one, AtEnd | Integral) and not wanted.needs_grid:
-                last = forms.values(wanted.kept_as(one), rows[ends], variant[ends])
+                value = forms.values(wanted.kept_as(one), last, who)
                 if isinstance(one, Integral):
-                    last = last - forms.values(wanted.kept_as(one), rows[starts], variant[starts])
-                _place(block, name, last)[who[ended]] = last[ended]
+                    value = value - forms.values(wanted.kept_as(one), first, who)
+                _place(block, name, value)[who[ended]] = value[ended]
 
 
 def _squared(times: Array, values: Array, starts: Array) -> Array:

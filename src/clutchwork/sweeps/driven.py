@@ -49,7 +49,7 @@ class IndependentInput:
         return cls(owner, name, settled(name, spec, kind, vars(owner)), given)
 
     def patches(self, where: Numbered, changes: Sequence[Line], most: int) -> list[list[Patch]]:
-        """What each line of changes makes of the System; ModelError names all that are wrong, at most so many."""
+        """Patches of the System for each line of changes; ModelError names all that are wrong, up to a maximum."""
         at, problems = At(path_of(self.owner), "").inner(self.name, self.spec.unit), list[Problem]()
         made, name = list[list[Patch]](), f"{self.owner.name}.{self.name}"
         for line in changes:

@@ -7,7 +7,6 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
-from functools import partial
 from typing import TYPE_CHECKING, Any, TypeAlias
 
 import numpy as np
@@ -17,7 +16,10 @@ from clutchwork.base.errors import UseError
 from clutchwork.base.quote import quote
 from clutchwork.declare.calls import explained
 from clutchwork.declare.options import instants
+from clutchwork.results.felt import WINDOW, felt_jerk
 from clutchwork.sweeps import parts
+from clutchwork.sweeps.numbers import number as plain_number
+from clutchwork.sweeps.numbers import pair
 
 if TYPE_CHECKING:
     from clutchwork.results.events import Event
@@ -28,6 +30,9 @@ Array = NDArray[Any]
 # what an integral over time is kept as
 INTEGRALS = {"power": "work", "speed": "angle", "acceleration": "speed"}
 ON_MASSES = {"speed": "position"}
+# a jump of the acceleration is a triangle of the jerk, two windows wide; its peak lies between two instants and is
+# missed by half a step over the window at most, 3 %
+PER_WINDOW = 16
 
 
 @dataclass(frozen=True)
@@ -139,6 +144,57 @@ class SquaredJerk:
 
 
 @dataclass(frozen=True)
+class FeltJerk:
+    """The largest jerk of a shaft or a mass, averaged over windows: second differences of its speed."""
+
+    shaft: str
+    window: float  # s
+    between: tuple[float, float] | None = None  # s
+
+    @property
+    def name(self) -> str:
+        """What a table calls it."""
+        return f"jerk({self.shaft})"
+
+    @property
+    def signal(self) -> str:
+        """The signal whose second difference it is."""
+        return f"{self.shaft}.speed"
+
+    def inside(self, begin: float, end: float) -> tuple[float, float]:
+        """The part of a run that counts [s]."""
+        first, last = self.between or (begin, end)
+        return max(first, begin), min(last, end)
+
+    def is_too_long(self, begin: float, end: float) -> bool:
+        """Whether a run has no two windows."""
+        first, last = self.inside(begin, end)
+        return last - first < 2.0 * self.window * (1.0 - 1e-9)
+
+    def times(self, begin: float, end: float) -> Array:
+        """Instants a small part of a window apart, at which a run gives the speed [s]; none if it is too short."""
+        (first, last), step = self.inside(begin, end), self.window / PER_WINDOW
+        count = -1 if self.is_too_long(begin, end) else int((last - first) / step * (1.0 + 1e-12))
+        found: Array = np.minimum(first + step * np.arange(count + 1), last)
+        return found
+
+    def felt(self, speeds: Array) -> Array:
+        """The jerk from speeds at these instants, with its sign: docs/theory/jerk.md (1)."""
+        return felt_jerk(speeds, self.window, PER_WINDOW)
+
+    def largest(self, speeds: Array) -> Array:
+        """The largest magnitude of each line of speeds, NaN where there is none."""
+        if speeds.shape[-1] <= 2 * PER_WINDOW:
+            return np.full(speeds.shape[:-1], np.nan)
+        return np.asarray(np.abs(self.felt(speeds.T)).max(axis=0))
+
+    def of(self, run: Trajectory) -> float:
+        """Its value in a run; NaN where the run did not finish."""
+        times = self.times(run.options.t_start, run.t_end)
+        return float(self.largest(run.at(times)[self.signal])) if run.finished and len(times) else float("nan")
+
+
+@dataclass(frozen=True)
 class When:
     """Time at which a contact locks or breaks away, counted from the start, or with -1 from the end."""
 
@@ -165,7 +221,7 @@ class When:
 
 @dataclass(frozen=True)
 class Computed:
-    """What a Python function makes of a run."""
+    """The result of a Python function of a run."""
 
     function: Callable[[Trajectory], Any]
     name: str
@@ -182,7 +238,7 @@ class Computed:
         return value.item() if getattr(value, "shape", None) == () else value
 
 
-Output: TypeAlias = AtEnd | AtTimes | Extreme | Integral | SquaredJerk | When | Computed
+Output: TypeAlias = AtEnd | AtTimes | Extreme | FeltJerk | Integral | SquaredJerk | When | Computed
 Asked: TypeAlias = "str | Output | Callable[[Trajectory], Any]"
 
 
@@ -238,6 +294,25 @@ def squared_jerk(shaft: str) -> SquaredJerk:
     return SquaredJerk(named("squared_jerk", shaft, "load"))
 
 
+@explained("cw.jerk", shaft="'car'")
+def jerk(shaft: str, window: Any = WINDOW, between: Any = None) -> FeltJerk:
+    """The largest jerk of a shaft [rad/s3] or a mass [m/s3] that is felt, for `sweep`, gradients and `calibrate`.
+
+    Parameters: shaft, its name; window [s], or with a unit, over which accelerations are averaged: shorter jerks do
+    not count, 0.05 s is what a person feels; between, two times [s], at least two windows apart, by default the whole
+    run. It is evaluated at 16 instants per window: a jump of the acceleration counts as its height over the window,
+    less 3 % at most. A jump at the start of the run does not count, and jumps within one window of its ends count only
+    in part. As a limit of `calibrate` it holds at all these instants. docs/theory/jerk.md (1)
+    """
+    length = plain_number(window, "s")
+    if length is None or length <= 0.0:
+        raise UseError("jerk", [f"window is {quote(window)}: give a time > 0 s, such as 0.05"])
+    ends = None if between is None else pair(between, "s")
+    if between is not None and (ends is None or ends[1] - ends[0] < 2.0 * length):
+        raise UseError("jerk", [f"between is {quote(between)}: give two times [s], two windows apart or more"])
+    return FeltJerk(named("jerk", shaft, "car"), length, ends)
+
+
 @explained("cw.lock")
 def lock(contact: str, number: int = 1) -> When:
     """When a contact locks [s], for `sweep`.
@@ -287,18 +362,15 @@ def asked(outputs: Any) -> dict[str, Output]:
 
 
 def _output(one: Any) -> Output:
-    if isinstance(one, AtEnd | AtTimes | Extreme | Integral | SquaredJerk | When | Computed):
+    if isinstance(one, AtEnd | AtTimes | Extreme | FeltJerk | Integral | SquaredJerk | When | Computed):
         return one
     if isinstance(one, str):
         return AtEnd(one)
     if callable(one):
         return Computed(one, getattr(one, "__name__", "function"))
-    if hasattr(one, "largest"):
-        # what studies tell apart is the whole of it
-        return Computed(partial(one.largest), one.name)
     if hasattr(one, "needs"):
         # a goal or limit of `calibrate`, which is above this
-        rest = "; take cw.squared_jerk of the shaft, or cw.peak of its acceleration" if "jerk" in one.name else ""
+        rest = "; take cw.jerk or cw.squared_jerk of the shaft" if "jerk" in one.name else ""
         raise UseError("sweep", [f"{one.name} is for calibrate alone{rest}"])
     remedy = "give the name of a signal, cw.at, cw.maximum, cw.lock ... of one, or a function of the run"
     raise UseError("sweep", [f"{quote(one)} is not an output; {remedy}"])

@@ -2,14 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection, Mapping
 from functools import cache
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
-
-from clutchwork.assembly.wiring import row_columns
 
 Array = NDArray[Any]
 Places = NDArray[np.intp]
@@ -18,23 +15,6 @@ Places = NDArray[np.intp]
 PARTS = 4
 # steps that have no rows inside, of a second or of the time, as in the core
 SHORT = 1e-12
-# what a row has of work
-WORKS = ("element_work", "contact_work", "prescribed_work", "supply_energy", "meter_energy")
-
-
-def lacks(sizes: Mapping[str, int], read: Collection[int], inside: Collection[int], parts: int) -> tuple[int, int]:
-    """Whether angles and work are read of no row, 2, or not inside of steps, 1.
-
-    Parameters: sizes, counts of a System; read, numbers of a row that are read; inside, those that are read inside of
-    steps too, which have so many `parts`.
-    """
-    columns = row_columns(sizes)
-
-    def of(*names: str) -> int:
-        places = {column for name in names for column in range(columns[name].start, columns[name].stop)}
-        return 2 if places.isdisjoint(read) else int(parts > 0 and places.isdisjoint(inside))
-
-    return of("angle"), of(*WORKS)
 
 
 def in_parts(times: Array) -> tuple[Array, Places]:

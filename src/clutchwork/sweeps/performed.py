@@ -20,6 +20,7 @@ from clutchwork.driveline.driveline import Driveline
 from clutchwork.run.flags import given_options
 from clutchwork.sweeps import outputs as made
 from clutchwork.sweeps.asking import CALLS, KNOWN
+from clutchwork.sweeps.factors import times
 from clutchwork.sweeps.result import Sweep, SweepInterrupted
 from clutchwork.sweeps.sweep import sweep
 
@@ -118,8 +119,9 @@ def _all_varied(texts: list[str]) -> list[tuple[str, Any]]:
 
 
 def _varied(text: str) -> tuple[str, Any]:
-    """c1.gain=4e-4:8e-4:21, c1.gain=4e-4,8e-4, or with units, c1.pressure=1:3 bar:5."""
+    """c1.gain=4e-4:8e-4:21, c1.gain=4e-4,8e-4, with units, c1.pressure=1:3 bar:5, factors c*.gain*=0.9,1.1."""
     name, sign, values = text.partition("=")
+    name, is_factor = name.removesuffix("*"), name.endswith("*")
     spaced = values.count(":") == 2
     words = values.split(":")[:2] if spaced else values.split(",")
     parts = [split(word) for word in words]
@@ -136,6 +138,10 @@ def _varied(text: str) -> tuple[str, Any]:
         raise UseError("sweep", [f"--vary {text}: {remedy}"])
     if len(units) > 1 or (units and not parts[-1][1]):  # type: ignore[index]
         raise UseError("sweep", [f"--vary {text}: write one unit, behind the last value: 'c1.pressure=1,2,3 bar'"])
+    if is_factor and units:
+        raise UseError("sweep", [f"--vary {text}: a factor has no unit; write c1.gain*=0.9,1.1"])
+    if is_factor:
+        return name, times(*numbers)
     return name, [f"{number!r} {unit}" for number in numbers for unit in units] or numbers
 
 

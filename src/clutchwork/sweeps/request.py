@@ -106,9 +106,9 @@ def threads_of(threads: object, call: str = "sweep") -> int:
 
 def refuse_unfit(system: System, variants: Variants) -> None:
     """ModelError where names are unknown or values are wrong on their own; of many, the ends are looked at."""
-    plan = Plan(system, variants)
+    plan = Plan(system, variants.plain)
     problems = plan.find()
-    for one in variants.varied:
+    for one in plan.variants.varied:
         if one.name in plan.targets:
             problems += plan.wrong_alone(replace(one, values=_telling(one.values)))
     if problems:

@@ -22,7 +22,7 @@ from clutchwork.declare.layout import DONE, INTERRUPTED, STATUSES
 from clutchwork.results.channels import Channels, channels
 from clutchwork.results.selection import chosen
 from clutchwork.run.simulation import told
-from clutchwork.sweeps.outputs import AtTimes, Computed, Integral, Output, SquaredJerk, When
+from clutchwork.sweeps.outputs import AtTimes, Computed, FeltJerk, Integral, Output, SquaredJerk, When
 from clutchwork.sweeps.single import single
 from clutchwork.sweeps.table import Shown
 
@@ -361,12 +361,18 @@ def _is_number(one: Varied) -> bool:
     return bool(one.unit) and one.column.dtype.kind in "fiu"
 
 
+# of jerks by those of speeds
+JERKS = {"rad/s": "rad/s3", "m/s": "m/s3"}
+
+
 def unit_of(one: Output, channels: Channels) -> str:
     """The unit of an output, empty where there is none."""
     if isinstance(one, When):
         return "s"
     if isinstance(one, Computed):
         return ""
+    if isinstance(one, FeltJerk):
+        return JERKS[channels[one.signal].unit]
     if isinstance(one, SquaredJerk):
         # the square of m/s3 over s
         return channels[one.signal].unit.replace("rad/s2", "rad2/s5").replace("m/s2", "m2/s5")

@@ -27,7 +27,7 @@ Shown = Callable[[int], None]
 
 def run_all(swept: Swept, threads: int, told: Shown) -> Sweep:
     """The result for all variants; SweepInterrupted with what is done after Ctrl-C."""
-    made, plan = Sweep.empty(swept), Plan.of(swept.system, swept.variants)
+    made, plan = Sweep.empty(swept), Plan.of(swept.system, swept.variants.plain)
     wanted = CoreOutputs.of(swept.system, swept.options, swept.outputs, swept.t_end)
     # what calls Python in a run cannot be on several threads
     alone = in_python(swept) or not wanted.outputs

@@ -43,15 +43,15 @@ def sweep(
     """Run a Driveline or a System with many sets of values, and keep the chosen outputs of each run.
 
     Parameters: t_end [s], or with a unit, options and their fields by name are those of `simulate`; vary, values by
-    name (all combinations), a list with the values of each variant, `cw.variants` or a DataFrame; outputs, what is
+    name (all combinations), a list with the values of each variant, `cw.variants` or a DataFrame; in place of values
+    `cw.times(0.9, 1.1)` multiplies what stands in the model, of all names that match a pattern; outputs, what is
     kept; threads, how many run at once, by default as many as there are cores; on, where they run: this process,
     "ray" or "dask" for processes, the address of a cluster for other machines; progress, True for a bar of tqdm, or a
     function of (variants done, variants).
 
     Names are those of `System.changed`; values may have units, "2 bar", and are kept in SI. An output is the name of a
-    signal, for its value at the end, `cw.at`, `cw.maximum`, `cw.minimum`, `cw.peak`, `cw.integral`, `cw.lock` or
-    `cw.break_away`, or a function of the Trajectory;
-    a mapping gives them names.
+    signal, for its value at the end, `cw.at`, `cw.maximum`, `cw.minimum`, `cw.peak`, `cw.integral`, `cw.jerk`,
+    `cw.lock` or `cw.break_away`, or a function of the Trajectory; a mapping gives them names.
 
     A variant that stops early has its status, and does not affect the others; the value of a function that raises is
     missing, with an `OutputWarning`, and `problems` of the result lists all of them. Ctrl-C ends the sweep with what is
@@ -76,4 +76,4 @@ def sweep(
 
 
 def _silent(done: int) -> None:
-    """Nobody asked."""
+    """No progress was requested."""

@@ -32,7 +32,7 @@ class Axis:
 
 
 def words_of(system: System, found: Sequence[Sequence[Patch]]) -> tuple[Places, Words]:
-    """Words of a System that any of many sets of patches changes, and what each set makes of all of them."""
+    """Words of a System that any of many sets of patches changes, and their content for each set."""
     shapes, own = dict[tuple[tuple[str, int, int], ...], list[int]](), np.frombuffer(system.to_bytes(), dtype=np.uint64)
     for number, patches in enumerate(found):
         shape = tuple((patch.array, patch.start, len(patch.values)) for patch in patches)

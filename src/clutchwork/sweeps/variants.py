@@ -16,6 +16,7 @@ from clutchwork.declare.calls import explained
 from clutchwork.model import changes
 from clutchwork.model.changes import Target, named, target
 from clutchwork.model.model import Model
+from clutchwork.sweeps.factors import Factors, multiplied
 
 Codes = NDArray[np.int64]
 PLAIN = (bool, int, float, str)
@@ -30,6 +31,8 @@ class Varied:
     labels: tuple[Any, ...]
     codes: Codes
     unit: str = ""  # of SI, where the values are numbers
+    # where values are factors: the numbers of the model that they multiply, by name
+    numbers: Mapping[str, float] | None = None
 
     @property
     def column(self) -> NDArray[Any]:
@@ -38,6 +41,14 @@ class Varied:
         plain = kinds <= {float, int} or kinds in ({bool}, {str})
         labels = np.array(self.labels) if plain else np.array([str(label) for label in self.labels])
         return labels[self.codes] if len(labels) else labels
+
+    @property
+    def plain(self) -> tuple[Varied, ...]:
+        """The same as values of the numbers that factors multiply."""
+        if self.numbers is None:
+            return (self,)
+        made = {name: tuple(number * factor for factor in self.values) for name, number in self.numbers.items()}
+        return tuple(Varied(name, values, values, self.codes) for name, values in made.items())
 
     def part(self, first: int, last: int) -> Varied:
         """What variants from first to last have, without the values of others."""
@@ -61,7 +72,19 @@ class Variants:
     def __getitem__(self, number: int) -> dict[str, Any]:
         """The values of one variant by name."""
         place = range(self.count)[number]
-        return {one.name: one.values[one.codes[place]] for one in self.varied}
+        return {one.name: one.values[one.codes[place]] for one in self.plain.varied}
+
+    @property
+    def plain(self) -> Variants:
+        """The same as a table of values, factors multiplied out."""
+        if all(one.numbers is None for one in self.varied):
+            return self
+        made = [own for one in self.varied for own in one.plain]
+        names = [one.name for one in made]
+        twice = sorted({name for name in names if names.count(name) > 1})
+        if twice:
+            raise UseError("sweep", [f"{name} is varied by more than one name; keep one of them" for name in twice])
+        return Variants(tuple(made), self.count)
 
     def part(self, first: int, last: int) -> Variants:
         """Variants from first to last; the whole with its shape where these are all."""
@@ -72,7 +95,9 @@ class Variants:
     def in_si(self, model: Model) -> Variants:
         """The same with values of SI where they have units that fit; others stay, to be refused with all mistakes."""
         owners = named(model)
-        return replace(self, varied=tuple(_in_si(one, target(owners, one.name)) for one in self.varied))
+        varied = (_in_si(one, target(owners, one.name)) for one in self.varied)
+        made = tuple(one if one.numbers is None else with_numbers(one, model) for one in varied)
+        return replace(self, varied=made)
 
 
 class VariantSource(Protocol):
@@ -89,13 +114,14 @@ class VariantSource(Protocol):
 
 def grid(vary: Mapping[str, Any]) -> Variants:
     """All combinations of the values of each name; the last one changes fastest."""
-    named = {name: _listed(name, values) for name, values in vary.items()}
+    factors = {name for name, values in vary.items() if isinstance(values, Factors)}
+    named = {name: _listed(name, values.how if name in factors else values) for name, values in vary.items()}
     _refuse_empty([name for name, (values, _) in named.items() if not values])
     shape = tuple(len(values) for values, _ in named.values())
     count = prod(shape)
     places = np.unravel_index(np.arange(count), shape) if shape and count else [np.zeros(0, np.int64)] * len(shape)
     varied = [
-        Varied(name, values, labels, np.asarray(codes, dtype=np.int64))
+        Varied(name, values, labels, np.asarray(codes, dtype=np.int64), numbers={} if name in factors else None)
         for (name, (values, labels)), codes in zip(named.items(), places, strict=True)
     ]
     return Variants(tuple(varied), count, shape)
@@ -109,13 +135,17 @@ def variants(columns: Mapping[str, Any]) -> Variants:
     """
     if not isinstance(columns, Mapping) or not columns:
         raise UseError("variants", [f"{quote(columns)} is not a table; give columns by name"])
-    listed = {name: _listed(name, values, labelled=False)[0] for name, values in columns.items()}
+    factors = {name for name, values in columns.items() if isinstance(values, Factors)}
+    given = {name: values.how if name in factors else values for name, values in columns.items()}
+    listed = {name: _listed(name, values, labelled=False)[0] for name, values in given.items()}
     _refuse_empty([name for name, values in listed.items() if not values])
     lengths = {name: len(values) for name, values in listed.items()}
     if len(set(lengths.values())) > 1:
         told = ", ".join(f"{name!r} has {length}" for name, length in lengths.items())
         raise UseError("variants", [f"columns differ in length: {told}; give each variant a value of every name"])
-    return Variants(tuple(_column(name, values) for name, values in listed.items()), next(iter(lengths.values())))
+    made = (_column(name, values) for name, values in listed.items())
+    varied = tuple(replace(one, numbers={}) if one.name in factors else one for one in made)
+    return Variants(varied, next(iter(lengths.values())))
 
 
 def given(vary: Any) -> VariantSource:
@@ -133,8 +163,13 @@ def given(vary: Any) -> VariantSource:
     raise UseError("sweep", [f"vary is {quote(vary)}: {remedy}"])
 
 
+def with_numbers(one: Varied, model: Model) -> Varied:
+    """Factors with the numbers of a model that they multiply."""
+    return replace(one, unit="1", numbers=multiplied(model, one.name))
+
+
 def _in_si(one: Varied, aim: Target | None) -> Varied:
-    if aim is None:
+    if aim is None or one.numbers is not None:
         return one
     unit = changes.unit_of(aim)
     if {float, int}.issuperset(map(type, one.values)):

@@ -20,8 +20,12 @@ from support.any_model.values import Plain
 CAUSES = {"jammed": "prescribed", "unbalanced": "prescribed", "out_of_table": "", "fault": "", "chatter": ""}
 # a speed beside which slips of others count as zero that do not: 1e-10 of it is the tolerance of all
 LOST = 1e9
-# kinds of fault that may be no more than the tolerance of a run times how stiff it is, or what its interpolant misses
-OF_TOLERANCE = ("integral", "balance massless", "creeps", "twist", "energy")
+# a speed that is none of a driveline
+FAST = 1e4
+# kinds of fault that may be no more than the tolerance of a run times how stiff it is, or what its interpolant misses:
+# a slip is a difference of speeds that are far larger, and what a spring stores may be less than the tolerance of its
+# twist makes
+OF_TOLERANCE = ("integral", "balance massless", "creeps", "twist", "energy", "heat", "mode")
 # of its largest ratio, one at a dead point: a crank or a cam that starts there and is held stops within a step of it
 DEAD = 1e-3
 # times its budget, with which a motion that is fast and regular ends: 0.1 s of an oscillation of 20 kHz that nothing
@@ -53,7 +57,7 @@ def _faults(made: Plain, seed: int, depth: int, only: str) -> list[Fault]:
         return [Fault("raises", type(error).__name__, str(error)[:300])]
     except Exception as error:
         return [Fault("raises", type(error).__name__, str(error)[:300])]
-    found = [*ending(made, base), *([] if explodes(base, LOST) else _confirmed(made, rows.faults(base)))]
+    found = [*ending(made, base), *([] if loses(base) else _confirmed(made, rows.faults(base)))]
     if depth and base.status == "done" and not explodes(base):
         try:
             found += agree.faults(made, base, seed, depth, only)
@@ -63,12 +67,14 @@ def _faults(made: Plain, seed: int, depth: int, only: str) -> list[Fault]:
 
 
 def _confirmed(made: Plain, found: list[Fault]) -> list[Fault]:
-    """Faults of rows, those that may be due to the tolerance only where a tight one leaves them."""
-    doubtful = [fault for fault in found if fault.key.startswith(OF_TOLERANCE)]
-    if not doubtful:
-        return found
-    tight = {fault.key for fault in rows.faults(agree.run(made, **agree.TIGHT))}
-    return [fault for fault in found if fault not in doubtful or fault.key in tight]
+    """Faults of rows, those that may be due to the tolerance only where tight ones leave them."""
+    for options in (agree.TIGHT, agree.TIGHTER):
+        doubtful = [fault for fault in found if fault.key.startswith(OF_TOLERANCE)]
+        if not doubtful:
+            break
+        tight = {fault.key for fault in rows.faults(agree.run(made, **options))}
+        found = [fault for fault in found if fault not in doubtful or fault.key in tight]
+    return found
 
 
 def ending(made: Plain, base: Any) -> list[Fault]:
@@ -94,8 +100,10 @@ def ending(made: Plain, base: Any) -> list[Fault]:
         return []
     if base.status == "jammed" and JAMS["light"][0] in base.message:
         return []
-    # a freewheel behind a ratio that passes zero: whatever it held, what turns on the other side would turn it backward
-    if base.status == "jammed" and JAMS["turned"][0] in base.message and passes_zero(base):
+    # a freewheel, or a gear that locks itself, behind a ratio that passes zero: whatever it held, what turns on the
+    # other side would turn it backward
+    turned = base.status == "unbalanced" or (base.status == "jammed" and JAMS["turned"][0] in base.message)
+    if turned and passes_zero(base):
         return []
     if base.status in ("jammed", "unbalanced", "too_many_steps") and at_dead_point(base):
         return []
@@ -140,8 +148,8 @@ def _left(ways: list[Any], node: int, front: float, back: float) -> float:
 
 
 def passes_zero(base: Any) -> bool:
-    """Whether a run ends where a ratio that is a signal passes zero."""
-    end = base.time[-1]
+    """Whether a run ends where a ratio that is a signal passes zero; one without rows ends where it starts."""
+    end = base.time[-1] if len(base.time) else base.options.t_start
     for branch in base.wiring.elements:
         ratio = getattr(branch.component, "ratio", None)
         if isinstance(ratio, cw.Signal):
@@ -177,12 +185,17 @@ def _largest_ratio(component: Any) -> float | None:
     return 0.5 * float(np.ptp([x for _, x in component.lift])) if component.kind == "cam_profile" else None
 
 
-def explodes(base: Any, most: float = 1e4) -> bool:
-    """Whether speeds grow without bound, as those of a torque that rises with the square of the speed do.
+def explodes(base: Any) -> bool:
+    """Whether speeds grow without bound, as those of a torque that rises with the square of the speed do."""
+    return _grows(base, FAST, slice(-1, None))
 
-    Parameter: most, a speed that is none of a driveline.
-    """
-    speed = base.rows[:, base.wiring.columns["speed"]]
-    if len(speed) < 2:
-        return False
-    return bool(np.abs(speed[-1]).max(initial=0.0) > max(most, 100.0 * np.abs(speed[0]).max(initial=0.0)))
+
+def loses(base: Any) -> bool:
+    """Whether a speed grows so that others are lost beside it, be it for an instant, as that of a shaft without inertia
+    does where a ratio passes zero."""
+    return _grows(base, LOST, slice(None))
+
+
+def _grows(base: Any, most: float, rows_seen: slice) -> bool:
+    speed = np.abs(base.rows[:, base.wiring.columns["speed"]])
+    return len(speed) >= 2 and bool(speed[rows_seen].max(initial=0.0) > max(most, 100.0 * speed[0].max(initial=0.0)))

@@ -41,9 +41,38 @@ CLUTCHWORK_INLINE S exp_behind(const S& x, const S& slip) {
   return exp(select(slip < S(0), smaller(x, S(20)), x));
 }
 
+/// The fall of a Stribeck curve.
+template <class S>
+CLUTCHWORK_INLINE S bell(const S& x) {
+  return exp(-(x * x));
+}
+
 /// A register that is read: what fits a register of the processor is there at once.
 template <class S>
 using Operand = std::conditional_t<std::is_floating_point_v<S>, S, const S&>;
+
+/// Functions that take far longer than to find them.
+template <class S>
+CLUTCHWORK_INLINE S function_of(Operation which, Operand<S> a, Operand<S> b) {
+  switch (which) {
+    case Operation::power:
+      return power_of(a, b);
+    case Operation::root:
+      return root_of(a);
+    case Operation::log:
+      return log(a);
+    case Operation::tanh:
+      return tanh(a);
+    case Operation::atan:
+      return atan(a);
+    case Operation::sin:
+      return sin(a);
+    case Operation::cos:
+      return cos(a);
+    default:
+      __builtin_unreachable();
+  }
+}
 
 /// What an instruction computes of the registers `a` and `b`; `word` says which instruction, `r` are all registers.
 template <class S>
@@ -57,6 +86,10 @@ CLUTCHWORK_HOT S computed(std::size_t word, Operand<S> a, Operand<S> b, const S*
       return r[word / words_per_operation] + a * b;
     case Operation::subtract_product:
       return r[word / words_per_operation] - a * b;
+    case Operation::add_quotient:
+      return r[word / words_per_operation] + a / b;
+    case Operation::subtract_quotient:
+      return r[word / words_per_operation] - a / b;
     case Operation::multiply:
       return a * b;
     case Operation::divide:
@@ -69,10 +102,6 @@ CLUTCHWORK_HOT S computed(std::size_t word, Operand<S> a, Operand<S> b, const S*
       return smaller(a, b);
     case Operation::larger:
       return larger(a, b);
-    case Operation::power:
-      return power_of(a, b);
-    case Operation::root:
-      return root_of(a);
     case Operation::exp:
       return exp(a);
     case Operation::exp_behind:
@@ -81,24 +110,17 @@ CLUTCHWORK_HOT S computed(std::size_t word, Operand<S> a, Operand<S> b, const S*
       return exp(-a);
     case Operation::fade_behind:
       return exp_behind(-a, b);
-    case Operation::log:
-      return log(a);
-    case Operation::tanh:
-      return tanh(a);
-    case Operation::atan:
-      return atan(a);
-    case Operation::sin:
-      return sin(a);
-    case Operation::cos:
-      return cos(a);
+    case Operation::bell:
+      return bell(a / b);
     case Operation::sign:
       return sign_of(a);
     case Operation::less:
       return select(a < b, S(1), S(0));
     case Operation::pick:
       return select(value(r[word / words_per_operation]) != 0, a, b);
+    default:
+      return function_of<S>(Operation(word % words_per_operation), a, b);
   }
-  __builtin_unreachable();
 }
 
 /// The words of a formula in the pool of points, and the numbers that it names, which stand behind the parameters of

@@ -35,12 +35,11 @@ class Tape {
     return n_++;
   }
   /// The number of a weighted sum of n numbers: nodes one behind the other, each but the first with that before it.
+  /// There are n + 1 numbers, of which an even count is used.
   [[gnu::noinline]] std::int32_t sum(int n, const std::int32_t* id, const double* by) {
     if (n_ + n / 2 >= room_) return full_ = true, 0;
-    for (int j = 0; j < n; j += 2) {
-      const bool two = j + 1 < n;
-      node_[n_++] = {j > 0 ? ~id[j] : id[j], two ? id[j + 1] : 0, by[j], two ? by[j + 1] : 0};
-    }
+    node_[n_++] = {id[0], id[1], by[0], by[1]};
+    for (int j = 2; j < n; j += 2) node_[n_++] = {~id[j], id[j + 1], by[j], by[j + 1]};
     return n_ - 1;
   }
   bool is_full() const { return full_; }
@@ -49,14 +48,17 @@ class Tape {
   /// Derivatives of what has been seeded by all numbers, in place.
   void back(double* adjoint) const {
     for (std::int32_t i = n_ - 1; i > 0; --i) {
-      const double x = adjoint[i];
+      double x = adjoint[i];
       if (x == 0) continue;
-      const Node& node = node_[i];
-      std::int32_t first = node.first;
-      if (first < 0) first = ~first, adjoint[i - 1] += x;
-      // what a constant gets is not looked at
-      adjoint[first] += x * node.by_first;
-      adjoint[node.second] += x * node.by_second;
+      // a sum goes on in the node before it; what a constant gets is not looked at
+      for (;;) {
+        const Node& node = node_[i];
+        const bool goes_on = node.first < 0;
+        adjoint[goes_on ? ~node.first : node.first] += x * node.by_first;
+        if (node.second != 0) adjoint[node.second] += x * node.by_second;
+        if (!goes_on) break;
+        x += adjoint[--i];
+      }
     }
   }
 
@@ -158,8 +160,8 @@ struct TapedSum {
   static constexpr int room = 8;
   double probe = 0;
   mutable int n = 0;
-  mutable std::int32_t id[room];
-  mutable double by[room];
+  mutable std::int32_t id[room + 1];
+  mutable double by[room + 1];
 
   TapedSum() = default;
   explicit TapedSum(double) {}
@@ -174,7 +176,9 @@ struct TapedSum {
 
   /// One number is left, or none.
   void settle() const {
-    if (n > 1) set_number(Tape::current()->sum(n, id, by));
+    if (n < 2) return;
+    id[n] = 0, by[n] = 0;
+    set_number(Tape::current()->sum(n, id, by));
   }
   /// Its number, 0: a constant.
   std::int32_t number() const {

@@ -175,7 +175,7 @@ int range_of(const LoadedLimit<T>& limit, int f) {
 }
 
 /// Most members with loads whose ranges are all tried; of more of them one after the other is changed.
-inline constexpr int most_tried = 4;
+inline constexpr int most_tried = 5;
 
 /// The largest factor over all choices of lines; the solution is that of the best one. docs/theory/load-dependent.md
 /// (11)

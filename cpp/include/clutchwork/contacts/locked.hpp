@@ -281,7 +281,7 @@ void list_locked(Workspace<T>& ws) {
   }
   h.n = h.n_fixed = n;
   h.n_redundant = h.n_sets = h.n_driven = 0;
-  h.too_many = false;
+  h.too_many = h.vanished = false;
   if (ws.ratios.n == 0 && (!ws.geometry.redundant || n < 2)) return;
   if (is_few(ws.sys)) {
     const int rank = split_held(ws, n);
@@ -315,7 +315,7 @@ template <class T>
   if (same) return;
   for (int a = 0; a < r.n; ++a) r.sorted[a] = r.value[a], r.value[a] = r.turned[a] = r.present[a];
   {
-    const BesideRatios<T> beside(ws, Written::last);
+    const BesideRatios<T> beside(ws, Written::last, left_over_shared);
     auto lay = [&](int row, int c) {
       for (int i = 0; i < nv; ++i) h.rows[row * nv + i] = T(0);
       ws.geometry.mass_weighted.add(ne + c, T(1), h.rows + row * nv);
@@ -323,7 +323,8 @@ template <class T>
     for (int a = 0; a < h.n; ++a) lay(a, h.contact[a]);
     for (int s = 0; s < h.n_redundant; ++s) lay(h.n + s, h.redundant[s]);
     const int rank = orthonormal_split(h.n + h.n_redundant, nv, h.rows, h.basis, h.order, h.norms, h.n);
-    for (int s = 0; s < h.n_redundant; ++s) {
+    h.vanished = rank < h.n;
+    for (int s = 0; s < h.n_redundant && !h.vanished; ++s) {
       resolve_direction(rank, nv, h.rows, h.order, h.rows + (h.n + s) * nv, h.share);
       const double size = value(ws.geometry.own[ne + h.redundant[s]]);
       for (int b = 0; b < nc; ++b) h.tie[s * nc + b] = T(0);
@@ -388,6 +389,8 @@ void outer_loads(Workspace<T>& ws, int k, const T* load, const T* carried) {
 template <class T>
 [[gnu::noinline]] T set_room(Workspace<T>& ws, int k, const T* carried, T noise, const T* load, double most = ample) {
   const DependentSet<T> set = dependent_set(ws, k, carried, noise);
+  // the load of a contact of which nothing is left has no digits
+  if (ws.held.vanished) return T(most - 1);
   if (ws.sys.loads == 0 || !holds_loads(ws)) {
     LimitLoad<T> limit = limit_of(ws, set);
     limit.most = most;
@@ -408,21 +411,25 @@ template <class T>
   LoadedLimit<T> limit = loaded_limit(ws, set, ws.held.set_member + ws.held.set_first[k], T(0));
   const T factor = solve_loaded(limit);
   if (!(value(factor) >= 1)) return T(-1);
+  // what is left of one that is reached is round-off
+  const double reached = 1e-12 * value(factor * limit.size);
   T least = T(infinity);
   for (int j = set.n; j < set.n + 2 * limit.n_loads; ++j) {
-    if (limit.place[j] >= 0 && value(limit.x[j]) < value(least)) least = limit.x[j];
+    if (limit.place[j] >= 0 && value(limit.x[j]) > reached && value(limit.x[j]) < value(least)) least = limit.x[j];
   }
   return least / (factor * limit.size);
 }
 
 /// The largest factor of the load of a set that is at its limit. Members without friction of their own hold a multiple
-/// of any size there or none: then with bounds widened by round-off.
+/// of any size there or none: then with bounds widened by round-off, which is that of all torques, as far as it takes.
 template <class T>
 T solve_at_limit(LoadedLimit<T>& limit) {
-  const T factor = solve_loaded(limit);
-  if (!(value(limit.size) > 0) || value(factor) >= 1) return factor;
-  limit.noise = T(1e-11) * limit.size;
-  return solve_loaded(limit);
+  T factor = solve_loaded(limit);
+  for (double share = 1e-11; share < 2e-8 && value(limit.size) > 0 && !(value(factor) >= 1); share *= 10) {
+    limit.noise = T(share) * limit.size;
+    factor = solve_loaded(limit);
+  }
+  return factor;
 }
 
 /// Torques of all contacts of set k in place of those of its independent contacts: `give` takes contact and torque.

@@ -183,8 +183,9 @@ void take_off_span(const Workspace<T>& ws, T* x) {
 }
 
 /// Of a direction of a contact that is shorter than this share of itself by the rows nothing is left; of an element,
-/// which only moves others, what is more than the round-off of the span is.
-inline constexpr double left_over = 1e-7, round_off_of_span = 1e-13;
+/// which only moves others, what is more than the round-off of the span is. `shared`: the same of a contact that is
+/// held in a set, which shares a load up to its pole.
+inline constexpr double left_over = 1e-7, round_off_of_span = 1e-13, left_over_shared = 1e-9;
 
 /// Orthonormal span of the rows that tie speeds with inertia, but for one (-1: none); of those that depend on others
 /// nothing is left.
@@ -219,7 +220,7 @@ void span_rows(Workspace<T>& ws, int without = -1) {
 
 /// What the rows leave of all directions, and the mobility of the contacts from it.
 template <class T>
-void leave_directions(Workspace<T>& ws) {
+void leave_directions(Workspace<T>& ws, double left = left_over) {
   Ratios<T>& r = ws.ratios;
   const int nv = int(ws.sys.speeds), ne = int(ws.sys.elements), nc = int(ws.sys.contacts);
   for (int d = 0; d < ws.n_directions; ++d) {
@@ -233,7 +234,7 @@ void leave_directions(Workspace<T>& ws) {
     for (int k = 0; k < r.rank; ++k) r.part[d * r.n + k] = dot(nv, r.span + k * nv, x);
     take_off_span(ws, x);
     r.own[d] = dot(nv, x, x);
-    const double least = d < ne ? smaller(r.blur, left_over) : left_over;
+    const double least = d < ne ? smaller(r.blur, left) : left;
     if (value(r.own[d]) > least * least * value(r.whole[d])) continue;
     for (int i = 0; i < nv; ++i) x[i] = T(0);
     r.own[d] = T(0);
@@ -322,6 +323,20 @@ void exchange(P& a, P& b) {
 /// those that were written down last.
 enum class Written { now, before, last };
 
+/// Whether the first rate of a transmission is given: its row is along the second direction alone, whatever the ratio.
+template <class T>
+bool is_given(const Workspace<T>& ws, int a) {
+  return follower_of(ws, a) < 0 && value(ws.geometry.own[first_of(ws, a)]) == 0;
+}
+
+/// The ratio of a transmission in a decision: one that leaves zero beside what is given is that of a nanosecond later.
+/// docs/theory/varying-ratios.md (6)
+template <class T>
+T ratio_to_decide(Workspace<T>& ws, int a) {
+  const Dual<T, 1> ratio = ratio_now(ws, a);
+  return value(ratio.v) == 0 && is_given(ws, a) ? T(1e-9) * ratio.d[0] : ratio.v;
+}
+
 /// While it lives, directions and mobility are what the transmissions leave of them.
 template <class T>
 class BesideRatios {
@@ -338,15 +353,16 @@ class BesideRatios {
   }
 
  public:
-  explicit BesideRatios(Workspace<T>& ws, Written which = Written::now) : ws_(ws), entered_(ws.ratios.n > 0) {
+  explicit BesideRatios(Workspace<T>& ws, Written which = Written::now, double left = left_over)
+      : ws_(ws), entered_(ws.ratios.n > 0) {
     if (!entered_) return;
     Ratios<T>& r = ws.ratios;
     for (int a = 0; a < r.n && which != Written::last; ++a) {
-      r.value[a] = which == Written::before ? r.before[a] : ratio_now(ws, a).v;
+      r.value[a] = which == Written::before ? r.before[a] : ratio_to_decide(ws, a);
       // round-off at a dead point
       if (abs(value(r.value[a])) <= 1e-15 * abs(value(bend_of_ratio(ws, a)))) r.value[a] = T(0);
     }
-    write_rows(ws), span_rows(ws), leave_directions(ws), leave_loads(ws);
+    write_rows(ws), span_rows(ws), leave_directions(ws, left), leave_loads(ws);
     swap();
   }
   BesideRatios(const BesideRatios&) = delete;

@@ -24,6 +24,8 @@ struct MotorTorque : declared::MotorTorque {
     T scale;                        ///< [N m]
     T lag;                          ///< [s]
   };
+  // either way drives at rest
+  static constexpr bool singular = true;
   // by which limit the command is clipped: of torque or of power, below or above
   enum Clip : int { low_torque, low_power, free, high_torque, high_power, clips };
 

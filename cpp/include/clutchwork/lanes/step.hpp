@@ -1,6 +1,7 @@
 #pragma once
 #include <clutchwork/components/branch.hpp>
 #include <clutchwork/lanes/inputs.hpp>
+#include <clutchwork/run/gauss.hpp>
 #include <clutchwork/run/guards/line.hpp>
 #include <clutchwork/run/guards/torques.hpp>
 #include <clutchwork/run/integrator/rodas5p.hpp>
@@ -45,6 +46,51 @@ template <int R, int NZ>
   evaluate_inline(form, t, y, d);
 }
 
+/// Whether nothing overflows at the end of a step and in what is read of it: what a row tells of energy has the size of
+/// the squares of the speeds.
+template <int R>
+CLUTCHWORK_INLINE Mask<R> is_sound(LaneForm<R>& form, Step<LaneForm<R>>& step) {
+  const Workspace<Lanes<R>>& ws = form.ws;
+  Lanes<R> sum(0);
+  for (int i = 0; i < form.n(); ++i) sum += step.y1()[i] * step.y1()[i] + step.f1()[i] * 0;
+  for (int j = 0; j < ws.out.n_seen; ++j) sum += ws.observed.torque[ws.out.seen[j]] * 0;
+  for (int j = 0; j < ws.out.n_worked; ++j) sum += ws.out.work[j] * 0;
+  return sum < 1e300;
+}
+
+/// Rates and torques of some branches at a share of the step of each lane.
+template <int R>
+[[gnu::noinline]] void observe_some(LaneForm<R>& form, Step<LaneForm<R>>& step, const Lanes<R>& s, const int* which,
+                                    int count) {
+  Workspace<Lanes<R>>& ws = form.ws;
+  Lanes<R>*y = step.point(), *d = step.slope();
+  interpolate(form, step, s, y);
+  inputs_with(ws, step.t + s * step.h, y + form.nz());
+  for (int i = 0; i < form.n(); ++i) d[i] = 0;
+  for (int j = 0; j < count; ++j) {
+    const int k = which[j];
+    ws.observed.rate[k] = form.rate(k, y) + offset_rate(ws, k);
+    ws.observed.torque[k] = branch_torque(ws, ws.branch[k], ws.observed.rate[k], y + form.nz(), d + form.nz());
+    if (ws.out.motion) form.push(k, ws.observed.torque[k], d);
+  }
+}
+
+/// Work of the branches whose work is read over the step of each lane. docs/theory/energy.md
+template <int R>
+CLUTCHWORK_INLINE void integrate_powers(LaneForm<R>& form, Step<LaneForm<R>>& step) {
+  Workspace<Lanes<R>>& ws = form.ws;
+  const int n = ws.out.n_worked, *which = ws.out.worked;
+  for (int i = 0; i < 4 * n; ++i) ws.out.power[i] = 0;
+  for (int g = 0; n > 0 && g < 4; ++g) {
+    observe_some(form, step, Lanes<R>(gauss.node[g]), which, n);
+    for (int k = 0; k < n; ++k) {
+      const Lanes<R> power = ws.observed.torque[which[k]] * ws.observed.rate[which[k]];
+      for (int j = 0; j < 4; ++j) ws.out.power[j * n + k] += power * Lanes<R>(gauss.coef[g][j]);
+    }
+  }
+  for (int k = 0; k < n; ++k) ws.out.work[k] = cubic_integral(ws.out.power + k, n, Lanes<R>(1), step.h);
+}
+
 /// Call f with a step and its form, the number of speeds known to the compiler.
 template <int R, int NZ = 1, class F>
 CLUTCHWORK_INLINE void visit_lanes(void* form, void* step, F&& f) {
@@ -74,6 +120,24 @@ struct LaneStep {
     *static_cast<Mask<R>*>(doubtful) =
         doubtful_inline(static_cast<LaneForm<R>*>(form)->ws, static_cast<Step<LaneForm<R>>*>(step)->h);
   }
+  /// What is read of a row at a share of the step of each lane, after `fit`; lanes in which it is finite.
+  static void observe(void* form, void* step, const void* share, void* sound) {
+    auto& f = *static_cast<LaneForm<R>*>(form);
+    auto& s = *static_cast<Step<LaneForm<R>>*>(step);
+    observe_some(f, s, *static_cast<const Lanes<R>*>(share), f.ws.out.seen, f.ws.out.n_seen);
+    if (f.ws.out.carried) multipliers(f.ws, f.ws.observed.torque, true, f.ws.observed.carried);
+    // a row adds what is held to nothing
+    for (int a = 0; f.ws.out.carried && a < f.ws.held.n; ++a) f.ws.observed.carried[a] += Lanes<R>(0);
+    *static_cast<Mask<R>*>(sound) = is_sound(f, s);
+  }
+  /// Its interpolant, and the work that is read; lanes in which that is finite.
+  static void fit(void* form, void* step, void* sound) {
+    auto& f = *static_cast<LaneForm<R>*>(form);
+    auto& s = *static_cast<Step<LaneForm<R>>*>(step);
+    Rodas5P::prepare_dense(f, s);
+    integrate_powers(f, s);
+    *static_cast<Mask<R>*>(sound) = is_sound(f, s);
+  }
 };
 
 /// The same as pointers: which one is taken depends on the processor.
@@ -81,6 +145,8 @@ struct LaneKernel {
   void (*advance)(void* form, void* step, void* error, void* finite);
   void (*linearize_at)(void* form, void* step, const void* times);
   void (*doubt)(void* form, void* step, void* doubtful);
+  void (*observe)(void* form, void* step, const void* share, void* sound);
+  void (*fit)(void* form, void* step, void* sound);
 };
 
 }  // namespace clutchwork

@@ -1,6 +1,7 @@
 #pragma once
 #include <clutchwork/lanes/exchange.hpp>
 #include <clutchwork/lanes/mode.hpp>
+#include <clutchwork/lanes/rows.hpp>
 #include <clutchwork/lanes/step.hpp>
 #include <clutchwork/run/phase.hpp>
 #include <clutchwork/run/step_size.hpp>
@@ -19,10 +20,13 @@ class Together {
   LanePhase* const* phase_;  ///< of each lane, null: nobody
   LaneForm<2> form_;
   Step<LaneForm<2>> step_;
-  Lanes<2> end_{0};  ///< [s] of the present step
-  const int n_;      ///< speeds and states
+  Lanes<2> end_{0};                  ///< [s] of the present step
+  const int n_;                      ///< speeds and states
+  const std::int64_t parts_;         ///< rows of a step
+  const ReadNumbers read_, inside_;  ///< what is read of them
   int n_active_ = 0;
   bool active_[n_lanes] = {}, counts_[n_lanes] = {}, visited_[n_lanes] = {};
+  bool alone_[n_lanes] = {};  ///< what happens in its step is left to its phase
 
  public:
   /// Phases that have begun, all in one mode; `first` is one of those that are there.
@@ -32,8 +36,12 @@ class Together {
         phase_(phases),
         form_(form_of(ws, pace_of(phases[first]).ws_)),
         step_(form_),
-        n_(form_.n()) {
+        n_(form_.n()),
+        parts_(pace_of(phases[first]).sink_.steps),
+        read_(run_of(first).out.read),
+        inside_(run_of(first).out.inside) {
     take_mode(ws_, run_of(first));
+    list_output(ws_, run_of(first), step_);
     for (int i = 0; i < n_lanes; ++i) enter(i, phase_[i] != nullptr ? i : first);
     list_varying(ws_);
   }
@@ -181,18 +189,76 @@ class Together {
   void settle() {
     Mask<2> doubtful;
     kernel_.doubt(&form_, &step_, &doubtful);
+    bool work = false, rows = false;
+    for (int i = 0; i < n_lanes; ++i) {
+      alone_[i] = !active_[i] || !counts_[i] || is_left_alone(pace(i));
+      if (alone_[i]) continue;
+      work = work || (has_work(run_of(i)) && ws_.out.n_worked > 0);
+      rows = rows || parts_ > 0;
+    }
+    if (work || rows) write(rows);
     for (int i = 0; i < n_lanes; ++i) {
       if (!active_[i] || !counts_[i]) continue;
-      StepSize<double>& one = pace(i);
-      if (doubtful[i] || has_work(one.ws_) || has_angles(one.ws_) || one.has_rows(1)) {
+      visited_[i] = alone_[i] || doubtful[i];
+      bool nothing = true;
+      if (visited_[i]) {
         unload(i);
-        phase_[i]->settle_given();
-        visited_[i] = true;
+        nothing = phase_[i]->settle_given(!alone_[i]);
       } else {
-        one.move_on();
+        pace(i).move_on();
       }
+      if (nothing) take_written(i);
     }
     pass_on();
+  }
+
+  /// Whether what is wanted of a step is more than the lanes give.
+  bool is_left_alone(const StepSize<double>& one) const {
+    const Workspace<double>& run = one.ws_;
+    const bool others = run.sys.prescribed + run.sys.supplies + run.sys.meters > 0;
+    if (has_angles(run) || (has_work(run) && (others || run.out.read.place != read_.place))) return true;
+    if (one.sink_.steps != parts_) return true;
+    if (parts_ == 0) return one.has_rows(1);
+    // rows at knots are compared with those behind them
+    return !ws_.out.rows || one.cut_ || run.out.inside.place != inside_.place ||
+           one.reach_ < shortest_with_rows * (1 + abs(one.end_of_step()));
+  }
+  // far above what the time can tell apart
+  static constexpr double shortest_with_rows = 1e-11;
+
+  /// Work and rows of the steps in which nothing happens.
+  void write(bool rows) {
+    Mask<2> sound;
+    kernel_.fit(&form_, &step_, &sound);
+    for (int i = 0; i < n_lanes; ++i) alone_[i] = alone_[i] || !sound[i];
+    for (std::int64_t k = 1; rows && k <= parts_; ++k) write_rows(k);
+    // the lanes have the signals as they are at the ends
+    inputs_at(ws_, end_);
+  }
+
+  /// What was written of a step becomes part of its run.
+  void take_written(int i) {
+    Workspace<double>& run = run_of(i);
+    for (int k = 0; has_work(run) && k < ws_.out.n_worked; ++k)
+      run.work[run.branch[ws_.out.worked[k]].direction] += ws_.out.work[k][i];
+    pace(i).sink_.at += parts_;
+    if (parts_ > 0) run.out.skipped = false, run.out.shown = end_[i], pace(i).sink_.lean = true;
+  }
+
+  /// Row k of each step.
+  void write_rows(std::int64_t k) {
+    Mask<2> sound;
+    Lanes<2> t;
+    const Lanes<2> share = share_of_row(k, parts_, step_.t, step_.h, Lanes<2>(1), end_, t);
+    kernel_.observe(&form_, &step_, &share, &sound);
+    for (int i = 0; i < n_lanes; ++i) {
+      alone_[i] = alone_[i] || !sound[i];
+      if (alone_[i]) continue;
+      const Sink& sink = pace(i).sink_;
+      const std::int64_t at = sink.at + k - 1;
+      sink.times[at] = t[i];
+      write_row(run_of(i), ws_.out, step_, i, t[i], sink.rows + run_of(i).row.size * at);
+    }
   }
 
   /// The end of the step is the start of the next one, but for those who have gone elsewhere.

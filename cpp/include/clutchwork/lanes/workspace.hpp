@@ -34,6 +34,31 @@ struct LaneLine {
   Lanes<R> sign, level;
 };
 
+/// A number of a row that lanes have; `from` is null: a signal.
+template <int R>
+struct ShownNumber {
+  const Lanes<R>* from;
+  int place;
+};
+
+/// What is made of steps in which nothing happens.
+template <int R>
+struct LaneOutput {
+  bool rows = false, motion = false, carried = false;  ///< rows are written; with speeds; with torques of held contacts
+  int n_shown = 0, n_seen = 0, n_worked = 0;
+  ShownNumber<R>* shown = nullptr;
+  int *seen = nullptr, *worked = nullptr;     ///< branches whose torques rows ask for; those whose work is read
+  Lanes<R>*power = nullptr, *work = nullptr;  ///< of each of these over a step: as cubics, and its integral
+  Lanes<R>* zero = nullptr;
+
+  template <class P, class A>
+  static void lay_out(P& p, A& a, const Sizes& n) {
+    a.take(p.shown, n.directions + n.states + n.signals), a.take(p.seen, n.directions);
+    a.take(p.worked, n.directions), a.take(p.power, 4 * n.directions), a.take(p.work, n.directions);
+    a.take(p.zero, 1);
+  }
+};
+
 /// Numbers of a model that may differ from lane to lane; the others are those of the first one.
 template <int R>
 struct LaneSystem : System {
@@ -74,8 +99,9 @@ struct Workspace<Lanes<R>> {
   Stages<Lanes<R>> stages;
   StepEnd<Lanes<R>> step_start{}, step_end{};
   struct {
-    Lanes<R>*torque = nullptr, *drift = nullptr;
+    Lanes<R>*rate = nullptr, *torque = nullptr, *drift = nullptr, *carried = nullptr;
   } observed;
+  LaneOutput<R> out;
   struct {
     LaneLine<R>* line = nullptr;
     int n_lines = 0, n_undirected = 0;
@@ -93,11 +119,12 @@ struct Workspace<Lanes<R>> {
     a.take(p.reduced.span, n.states), a.take(p.reduced.floor, n.states);
     a.take(p.reduced.size, n.speeds), a.take(p.reduced.missed, n.speeds);
     a.take(p.observed.torque, n.directions), a.take(p.observed.drift, n.directions);
+    a.take(p.observed.rate, n.directions), a.take(p.observed.carried, n.contacts);
     a.take(p.guard.line, 3 * n.directions + n.contacts);
     a.take(p.contact.fault, n.contacts), a.take(p.contact.compliant, n.contacts);
     a.take(p.contact.bends, n.contacts), a.take(p.held.contact, n.contacts);
     auto each = [&](auto&... part) { (std::remove_reference_t<decltype(part)>::lay_out(part, a, n), ...); };
-    each(p.in, p.jacobian, p.stages, p.step_start, p.step_end);
+    each(p.in, p.jacobian, p.stages, p.step_start, p.step_end, p.out);
   }
 };
 

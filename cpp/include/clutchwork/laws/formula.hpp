@@ -20,13 +20,14 @@ struct Formula : declared::Formula {
     // beyond the slips at which it was looked at
     return larger(r.at[program.coefficient()], S(0));
   }
-  /// The kinetic coefficient is a floor, at whatever temperature and pressure.
+  /// The kinetic coefficient is a floor, at whatever temperature and pressure; where one has no value, nothing holds.
   template <class T, class S>
   static S hold(const Params<T>& p, const At<S>& at) {
     const Program<T, Point<S>> program(p, at.points);
     Registers<S> r;
     program.run(at, around(at), 0, program.for_all(), r.at);
-    return larger(r.at[program.at_rest()], larger(r.at[program.coefficient()], S(0)));
+    const S rest = r.at[program.at_rest()], kinetic = larger(r.at[program.coefficient()], S(0));
+    return select(kinetic > rest, kinetic, select(kinetic <= rest, rest, kinetic + rest));
   }
   static bool is_sound(const Params<double>& p, const double* points, std::int64_t room) {
     return is_program(p, points, room, 0);

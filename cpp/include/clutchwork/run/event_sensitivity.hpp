@@ -27,6 +27,17 @@ void motion_now(Form& form, const T* y, const T* algebraic, T* out) {
   }
 }
 
+/// The same so long before, or behind, where the motion is another one on both sides of the present instant, and none
+/// of them right at it.
+template <class Form, class T = typename Form::Scalar>
+void motion_beside(Form& form, Step<Form>& step, const T* algebraic, double aside, T* out) {
+  motion_now(form, step.y0(), algebraic, out);
+  if (aside == 0) return;
+  T* beside = step.k(1);
+  for (int i = 0; i < form.n(); ++i) beside[i] = T(value(step.y0()[i]) + aside * value(out[i]));
+  motion_now(form, beside, algebraic, out);
+}
+
 /// Angles and work at the present instant move by their rates times `by`.
 template <class Form, class T = typename Form::Scalar>
 void move_integrals(Form& form, Step<Form>& step, const T& by) {
@@ -49,13 +60,13 @@ void move_integrals(Form& form, Step<Form>& step, const T& by) {
 
 /// From the derivatives at the instant of an event to those at the event, which moves. docs/theory/gradients.md (4)
 template <class Form, class T = typename Form::Scalar>
-void move_with(Form& form, Step<Form>& step, const T& shift, const T* algebraic = nullptr) {
+void move_with(Form& form, Step<Form>& step, const T& shift, const T* algebraic = nullptr, double aside = 0) {
   Workspace<T>& ws = form.ws;
-  ws.moved.shift = T(0);
+  ws.moved.shift = T(0), ws.moved.aside = aside;
   ws.moved.here = shift, ws.moved.here_time = ws.time;
   if (is_zero(shift)) return;
   T* velocity = step.k(0);
-  motion_now(form, step.y0(), algebraic, velocity);
+  motion_beside(form, step, algebraic, -aside, velocity);
   if (ws.options.angles || ws.options.work) move_integrals(form, step, shift);
   for (int i = 0; i < form.n(); ++i) step.y0()[i] += velocity[i] * shift;
   ws.moved.shift = shift;
@@ -72,7 +83,7 @@ bool leave_event(Form& form, Step<Form>& step) {
   ws.moved.shift = T(0);
   // constant signals have no part in it, those that vary are read again
   T* velocity = step.k(0);
-  motion_now(form, step.y0(), static_cast<const T*>(nullptr), velocity);
+  motion_beside(form, step, static_cast<const T*>(nullptr), ws.moved.aside, velocity);
   if (ws.options.angles || ws.options.work) move_integrals(form, step, -shift);
   for (int i = 0; i < form.n(); ++i) step.y0()[i] -= velocity[i] * shift;
   ws.in.time = -infinity;
@@ -128,27 +139,43 @@ void note_graze(Workspace<T>& ws, int what, int component, double index, const T
   if (m.n < Moved<T>::room) m.graze[m.n++] = {ws.time, double(what), double(component), index, apart};
 }
 
-/// Borders of pieces on which the run begins, and which move with the numbers: on which side it begins is open.
-template <class Form>
-void note_borders(Form& form, Step<Form>& step) {
+/// Borders of a guard at which the present state is, and which move with the numbers: on which side it is is open.
+template <class G, class Form>
+void note_borders_of(Form& form, Step<Form>& step, int place) {
   constexpr double near = 1e-9;
   using T = typename Form::Scalar;
   Workspace<T>& ws = form.ws;
-  if (ws.statistics.steps > 0) return;
-  GuardList::each([&](auto tag, int place) {
-    using G = typename decltype(tag)::type;
-    if constexpr (requires { G::each_border(ws, [](int) {}); }) {
-      G::each_border(ws, [&](int index) {
-        Hit hit;
-        hit.what = place, hit.index = index, ws.in.time = -infinity;
-        const T margin = G::at(form, step, hit, ws.time, step.y0(), hit.who);
-        if (abs(value(margin)) > near * G::scale(form, hit, step.y0())) return;
-        note_graze(ws, place, G::component(ws, hit), infinity, margin);
-        ws.moved.last = T(0);
-      });
+  const T last = ws.moved.last;
+  const double last_time = ws.moved.last_time;
+  // a load may be turned by where a signal goes from here
+  const double far = ws.in.next_knot < infinity ? 0.37 * (ws.in.next_knot - ws.time) : 1e-3 * (1 + abs(ws.time));
+  const double ahead = std::is_same_v<G, LineFlip> ? far : 0.0;
+  G::each_border(ws, [&](int index) {
+    for (const double later : {0.0, ahead}) {
+      Hit hit;
+      hit.what = place, hit.index = index, ws.in.time = -infinity;
+      const T margin = G::at(form, step, hit, ws.time + later, step.y0(), hit.who);
+      if (abs(value(margin)) > near * G::scale(form, hit, step.y0())) return;
+      // as one that is met together with what does not move
+      ws.moved.last = T(0), ws.moved.last_time = ws.time;
+      note_graze(ws, place, G::component(ws, hit), infinity, margin);
+      if (ahead == 0) return;
     }
   });
+  ws.moved.last = last, ws.moved.last_time = last_time;
   ws.in.time = -infinity;
+}
+
+/// Borders of pieces on which the run begins. `loads` alone: loads that follow torques and are zero from here on.
+template <class Form>
+void note_borders(Form& form, Step<Form>& step, bool loads = false) {
+  if (form.ws.statistics.steps > 0 && !loads) return;
+  GuardList::each([&](auto tag, int place) {
+    using G = typename decltype(tag)::type;
+    if constexpr (requires { G::each_border(form.ws, [](int) {}); }) {
+      if (!loads || std::is_same_v<G, LineFlip>) note_borders_of<G>(form, step, place);
+    }
+  });
 }
 
 /// Contacts that come to rest with the one that was hit, but at another instant where a number changes: by how much
@@ -227,21 +254,31 @@ bool has_jumped(const Workspace<T>& ws, double guard, double scale) {
   return guard < -least * scale && ws.time - ws.moved.here_time <= 1e-12 * (1 + abs(ws.time));
 }
 
-/// How a hit moves whose guard jumps there, by what is left shortly before it, at two instants, and its rate, which is
-/// that at the hit to second order.
+/// How a hit moves whose guard jumps there, and its rate, by a cubic through what is left shortly before it: from as
+/// far as that is smooth, since round-off hides how much is left near by.
 template <class G, class Form, class T = typename Form::Scalar>
 T sudden_shift(Form& form, Step<Form>& step, const Hit& hit, const T* velocity, double& rate) {
+  constexpr double farthest = 1e-2, closest = 1e-4, smooth = 1e-5;
   Workspace<T>& ws = form.ws;
-  const double reach = 1e-4 * larger(ws.moved.span, 1e-9);
-  T* probe = step.k(1);
-  auto left = [&](double back) {
-    for (int i = 0; i < form.n(); ++i) probe[i] = step.y0()[i] - velocity[i] * back;
-    ws.in.time = -infinity;
-    return G::left(form, step, hit, ws.time - back, probe);
-  };
-  const T near = left(reach), far = left(2 * reach);
-  rate = (value(far) - 4 * value(near)) / (2 * reach);
-  return rate != 0 ? without_value(T(2) * near - far) * T(-1 / rate) : T(0);
+  T *probe = step.k(1), guard = T(0);
+  double least = infinity;
+  for (double share = farthest; share > 0.5 * closest && least > smooth; share *= 0.1) {
+    const double reach = share * larger(ws.moved.span, 1e-9);
+    T left[4];
+    for (int k = 0; k < 4; ++k) {
+      const double back = (k + 1) * reach;
+      for (int i = 0; i < form.n(); ++i) probe[i] = step.y0()[i] - velocity[i] * back;
+      ws.in.time = -infinity;
+      left[k] = G::left(form, step, hit, ws.time - back, probe);
+    }
+    auto sum = [&](double a, double b, double c, double d) {
+      return T(a) * left[0] + T(b) * left[1] + T(c) * left[2] + T(d) * left[3];
+    };
+    const double slope = value(sum(26, -57, 42, -11)) / (6 * reach), other = value(sum(5, -8, 3, 0)) / (2 * reach);
+    const double apart = slope != 0 ? abs(other / slope - 1) : 1e300;
+    if (apart < least) rate = slope, guard = sum(4, -6, 4, -1), least = apart;
+  }
+  return rate != 0 ? without_value(guard) * T(-1 / rate) : T(0);
 }
 
 /// How a hit moves: minus the derivative of its guard at a fixed instant over its time derivative; one that has jumped
@@ -283,7 +320,12 @@ void move_to_hit(Form& form, Step<Form>& step, const Hit& hit) {
   motion_now(form, step.y0(), algebraic, velocity);
   GuardList::visit(hit.what, [&](auto tag) {
     using G = typename decltype(tag)::type;
-    move_with(form, step, hit_shift<G>(form, step, hit, velocity), algebraic);
+    double aside = 0;
+    if constexpr (requires { G::aside(form, hit, velocity); }) {
+      aside = G::aside(form, hit, velocity);
+      if (aside > 0) motion_beside(form, step, algebraic, -aside, velocity);
+    }
+    move_with(form, step, hit_shift<G>(form, step, hit, velocity), algebraic, aside);
   });
 }
 

@@ -126,6 +126,45 @@ bool balance_massless(Form& form, Step<Form>& step) {
   return way > jump * (1 + fastest);
 }
 
+/// What is missing in the balance d of the speeds without inertia, of the torques at them.
+template <class Form, class T = typename Form::Scalar>
+double share_missing(Form& form, const T* d) {
+  Workspace<T>& ws = form.ws;
+  const Compressed<T>& rows = ws.rows.rate;
+  double missing = 0, size = 0;
+  for (int k = 0; k < ws.n_branches; ++k) {
+    for (int e = rows.first[k]; e < rows.first[k + 1]; ++e) {
+      if (is_massless(ws, rows.col[e])) size += abs(value(rows.val[e] * ws.observed.torque[k]));
+    }
+  }
+  for (int i = 0; i < form.nz(); ++i) {
+    if (is_massless(ws, i)) missing = larger(missing, abs(value(d[i])));
+  }
+  return missing > 0 ? missing / size : 0.0;
+}
+
+/// Speeds without inertia of y, inside of a step, to where their torques balance: an interpolant has them less exactly
+/// than the ends. Newton by what was linearized last; d is their balance, b memory. docs/theory/reduction.md (9)
+template <class Form, class T = typename Form::Scalar>
+[[gnu::noinline]] void settle_massless(Form& form, double t, T* y, T* d, T* b) {
+  constexpr int rounds = 4;
+  constexpr double enough = 1e-9;
+  Workspace<T>& ws = form.ws;
+  const int nz = form.nz();
+  double left = share_missing(form, d);
+  for (int round = 0; round < rounds && left > enough; ++round) {
+    for (int i = 0; i < nz; ++i) b[i] = is_massless(ws, i) ? d[i] : T(0);
+    if (!solve_held(form, b)) return;
+    for (int i = 0; i < nz; ++i) y[i] += b[i];
+    observe(form, t, y, d);
+    const double before = left;
+    left = share_missing(form, d);
+    if (left < before) continue;
+    for (int i = 0; i < nz; ++i) y[i] -= b[i];
+    return observe(form, t, y, d);
+  }
+}
+
 /// Rates of change of the speeds without inertia along the motion, of which d has the others and those of the states:
 /// their balance at (t, y) holds on. docs/theory/reduction.md (9)
 template <class Form, class T = typename Form::Scalar>

@@ -7,6 +7,7 @@
 #include <clutchwork/run/integrator/memory.hpp>
 #include <clutchwork/run/power.hpp>
 #include <clutchwork/run/snapshot.hpp>
+#include <clutchwork/run/step_calls.hpp>
 #include <clutchwork/workspace.hpp>
 
 /// Rows of output and the integrals of angle and work: docs/theory/energy.md.
@@ -22,6 +23,7 @@ struct Sink {
   std::int64_t steps = 0;        ///< rows in every step, the last at its end; 0: a grid
   double restarted = -infinity;  ///< [s] where a phase has started last
   std::int64_t restart_row = 0;  ///< rows before those of that start
+  bool lean = false;             ///< the last row has only what is read of it
 
   /// A phase starts at time t: of several decisions at one instant the last one is the right limit.
   void restart(double t) {
@@ -186,6 +188,7 @@ template <class Form, class T = typename Form::Scalar>
 bool fill_row(Form& form, Step<Form>& step, double s, double s_end, Sink& sink) {
   const std::int64_t size = form.ws.row.size;
   double* row = sink.rows + size * sink.at;
+  sink.lean = false;
   if constexpr (has_tangents<T>) {
     T* full = form.ws.moved.row;
     fill_numbers(form, step, s, s_end, full);
@@ -195,6 +198,38 @@ bool fill_row(Form& form, Step<Form>& step, double s, double s_end, Sink& sink) 
     fill_numbers(form, step, s, s_end, row);
   }
   return is_finite(form.ws, row);
+}
+
+/// What is read of a row at s, which nobody compares with another, where that is no more than torques of branches,
+/// states and signals. False: it is more, or not finite.
+template <class Form, class T = typename Form::Scalar>
+bool fill_read(Form& form, Step<Form>& step, double s, double* row) {
+  Workspace<T>& ws = form.ws;
+  const RowLayout& at = ws.row;
+  const ReadNumbers& inside = ws.out.inside;
+  step.calls->observe(form, step, s);
+  double sum = 0;
+  for (std::int64_t i = 0; i < inside.n; ++i) {
+    const std::int64_t place = inside.place[i];
+    const bool torque = place >= at.element_torque && place < at.element_work;
+    const int k = torque ? ws.branch_of[place - at.element_torque] : -1;
+    if (torque ? k < 0 || k >= ws.n_branches : place < at.state || (place >= at.element_work && place < at.input))
+      return false;
+    row[place] = torque              ? ws.observed.torque[k]
+                 : place >= at.input ? signal_value(ws, int(place - at.input), step.t + s * step.h)
+                                     : step.point()[form.nz() + (place - at.state)];
+    sum += row[place] * 0;
+  }
+  return sum == 0;
+}
+
+/// The time of row k of so many that divide a step from `start` up to its share s_end, which is the time `end`; its
+/// share.
+template <class R>
+CLUTCHWORK_INLINE R share_of_row(std::int64_t k, std::int64_t parts, R start, R h, R s_end, R end, R& t) {
+  t = k == parts ? end : start + s_end * R(double(k)) / R(double(parts)) * h;
+  // as a grid with this instant has it, but for the bare steps
+  return parts == 1 ? s_end : smaller(s_end, (t - start) / h);
 }
 
 /// Rows that divide the step up to s_end into equal parts, the last one at its end. `running`: all is well.
@@ -209,12 +244,15 @@ Status emit_parts(Form& form, Step<Form>& step, double s_end, double end, Sink& 
     if (parts > 1 && out.skipped) return Status::running;
     out.shown = end;
   }
+  // rows at the end of a step are compared
+  const bool lean = out.inside.n >= 0 && form.ws.sys.prescribed + form.ws.sys.loads == 0;
   for (std::int64_t k = 1; k <= parts; ++k) {
-    const double t = k == parts ? end : step.t + s_end * double(k) / double(parts) * step.h;
-    // as a grid with this instant has it, but for the bare steps
-    const double s = parts == 1 ? s_end : smaller(s_end, (t - step.t) / step.h);
-    sink.times[sink.at] = t;
-    if (!fill_row(form, step, s, s_end, sink)) return Status::not_finite;
+    const double s = share_of_row<double>(k, parts, step.t, step.h, s_end, end, sink.times[sink.at]);
+    bool filled = false;
+    // a build that must be small fills whole rows
+    if constexpr (has_sizes<Form>)
+      filled = k < parts && lean && fill_read(form, step, s, sink.rows + form.ws.row.size * sink.at);
+    if (!filled && !fill_row(form, step, s, s_end, sink)) return Status::not_finite;
     ++sink.at;
   }
   return Status::running;

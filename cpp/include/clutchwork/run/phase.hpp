@@ -84,10 +84,11 @@ class Phase : public StepSize<typename Form::Scalar> {
 
   /// A knot, or the end. False: the phase is over.
   [[gnu::noinline]] bool settle_due() { return may_step(); }
-  /// Whatever happens inside the step, of which the rows of both ends and the stages are given.
-  [[gnu::noinline]] void settle_given() {
+  /// Whatever happens inside the step, of which the rows of both ends and the stages are given. `written`: rows and
+  /// work are there for the case that nothing happens; true: nothing did.
+  [[gnu::noinline]] bool settle_given(bool written) {
     step_.t = ws_.time, step_.h = reach_, step_.dense = false;
-    settle_step();
+    return settle_step(written);
   }
   /// The step has become too short. The inputs are those of its last stage.
   [[gnu::noinline]] void collapse() {
@@ -286,6 +287,7 @@ class Phase : public StepSize<typename Form::Scalar> {
     if (knot_lets_go(taken_form().ws)) return decide(Cause::input);
     if constexpr (has_tangents<T>) {
       if (leave_event(form_, step_)) balance_massless(form_, step_), linearize_start();
+      note_borders(form_, step_, true);
     }
     show_behind(jumps);
   }
@@ -338,9 +340,11 @@ class Phase : public StepSize<typename Form::Scalar> {
     return true;
   }
 
-  /// What happens inside a step, and where the run goes on from.
-  [[gnu::noinline]] void settle_step() {
+  /// What happens inside a step, and where the run goes on from. `written`: rows and work are there for the case that
+  /// nothing happens; true: nothing did.
+  [[gnu::noinline]] bool settle_step(bool written = false) {
     const Hit hit = find_hit(taken_form(), taken_step());
+    const bool is_written = written && hit.none();
     if (must_land(hit)) {
       land(hit.s);
     } else if (hit.rough) {
@@ -349,9 +353,11 @@ class Phase : public StepSize<typename Form::Scalar> {
       reject_and_shrink();
     } else if (Form::full && hit.none() && taken_form().ws.ratios.jammed >= 0) {
       jam(taken_form().ws.ratios.jammed);
-    } else if (reach(hit.s)) {
+    } else if (is_written || reach(hit.s)) {
       hit.none() ? accept() : meet(hit);
+      return is_written;
     }
+    return false;
   }
 
   void reject() {
@@ -433,7 +439,7 @@ class Phase : public StepSize<typename Form::Scalar> {
   bool follow(double s)
     requires has_tangents<T>
   {
-    varied_.rest();
+    if (s <= 0) varied_.rest();
     for (double at = 0; at < s;) {
       const double to = varied_.follow(at, s, end_of_step());
       if (to < 0) return leave(Status::step_collapse), false;
@@ -517,6 +523,7 @@ class Phase : public StepSize<typename Form::Scalar> {
     ws_.last_step = hit.s * reach_ > 1e-9 * larger(1e-3, planned) ? planned : larger(4 * h_, planned);
     // the run keeps its last step alone, and may be left here to make room for rows
     before_ = 0, landings_ = 0, rejected_ = false;
+    if (sink_.lean) fill_last_row();
     // a run with derivatives has a step that ends there
     const double at = has_tangents<T> ? 1.0 : hit.s;
     if constexpr (has_tangents<T>) varied_.fit_part();
@@ -542,6 +549,17 @@ class Phase : public StepSize<typename Form::Scalar> {
     keep_prescribed(ws_);
     keep_ratios(ws_);
     GuardList::visit(hit.what, [&](auto tag) { decltype(tag)::type::settle(*this, hit); });
+  }
+
+  /// The row at the start of the step is compared with the one behind the event; what is read of it stays as it is.
+  /// There is room for one more behind it.
+  [[gnu::noinline]] void fill_last_row() {
+    fit(form_, step_);
+    fill_row(form_, step_, 0.0, 0.0, sink_);
+    double *full = sink_.rows + ws_.row.size * sink_.at, *last = full - ws_.row.size;
+    const ReadNumbers& inside = ws_.out.inside;
+    for (std::int64_t i = 0; i < inside.n; ++i) full[inside.place[i]] = last[inside.place[i]];
+    for (std::int64_t i = 0; i < ws_.row.size; ++i) last[i] = full[i];
   }
 
   /// Slopes of the speeds without inertia, which no equation of motion gives.

@@ -1,31 +1,12 @@
 #pragma once
 #include <clutchwork/motion/dynamics.hpp>
+#include <clutchwork/run/gauss.hpp>
 #include <clutchwork/run/integrator/memory.hpp>
 #include <clutchwork/run/snapshot.hpp>
 #include <clutchwork/workspace.hpp>
 
 /// Power over a step, and work from it: docs/theory/energy.md.
 namespace clutchwork {
-
-/// Nodes of the Gauss rule on [0, 1] and the coefficients of its Lagrange polynomials.
-struct Gauss {
-  static constexpr double node[4] = {0.06943184420297371, 0.33000947820757187, 0.6699905217924281, 0.9305681557970263};
-  static constexpr double weight[4] = {0.17392742256872693, 0.32607257743127307, 0.32607257743127307,
-                                       0.17392742256872693};
-  double coef[4][4];
-  constexpr Gauss() : coef{} {
-    for (int i = 0; i < 4; ++i) {
-      double p[4] = {1, 0, 0, 0};
-      for (int j = 0; j < 4; ++j) {
-        if (j == i) continue;
-        const double scale = 1 / (node[i] - node[j]);
-        for (int k = 3; k >= 0; --k) p[k] = ((k > 0 ? p[k - 1] : 0) - node[j] * p[k]) * scale;
-      }
-      for (int k = 0; k < 4; ++k) coef[i][k] = p[k];
-    }
-  }
-};
-inline constexpr Gauss gauss{};
 
 /// Whether angles and work are integrated: they are asked for, and somebody reads them.
 template <class T>
@@ -106,11 +87,7 @@ void fit_power(Form& form, Step<Form>& step, double s_end) {
 /// Integral of a fitted power from the start of the step to the share x of the fitted part of length h.
 template <class T>
 T fitted_work(const Workspace<T>& ws, int i, double x, double h) {
-  const int n = fitted_powers(ws);
-  const T* c = ws.out.power + i;
-  using R = Real<T>;
-  const R r = R(x);
-  return R(h) * r * (c[0] + r * (c[n] / R(2) + r * (c[2 * n] / R(3) + r * c[3 * n] / R(4))));
+  return cubic_integral(ws.out.power + i, fitted_powers(ws), Real<T>(x), Real<T>(h));
 }
 
 /// Whether inside of a step the integrals of the cubics miss more than the tolerance of the work: seen by what they

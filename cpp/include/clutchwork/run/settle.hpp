@@ -7,20 +7,15 @@
 /// The smooth pieces on which the elements are: docs/theory/events.md, rule 12.
 namespace clutchwork {
 
-/// Rate of a direction, zero to the last bit at rest: what jumps there must not follow round-off.
-template <class T>
-double rate_or_rest(const Workspace<T>& ws, int d) {
-  const double rate = value(rate_of(ws, d));
-  return abs(rate) <= slip_tolerance(ws) ? 0.0 : rate;
-}
-
-/// The elements are on the pieces that hold their rates, states and inputs.
+/// The elements are on the pieces that hold their rates, states and inputs: at a kink, to what counts as zero, on the
+/// one above, for what jumps there must not follow round-off. docs/theory/events.md, rule 17
 template <class T>
 void find_pieces(Workspace<T>& ws) {
+  const double zero = slip_tolerance(ws);
   for (int d = 0; d < ws.sys.elements; ++d) {
     if (ws.sys.element_way[d] != 0) continue;
     const int edges = edge_count(ws, d);
-    if (edges > 0) ws.piece[d] += piece_of(ws, d, rate_or_rest(ws, d)) - ws.piece[d] % (edges + 1);
+    if (edges > 0) ws.piece[d] += piece_of(ws, d, value(rate_of(ws, d)) + zero) - ws.piece[d] % (edges + 1);
     if (!is_settling(ws.sys.element_kind[d])) continue;
     const Branch<T> b = make_branch(ws, d, 0);
     ws.piece[d] = settled_piece(ws, b, PresentRates<T>(ws, b).at);

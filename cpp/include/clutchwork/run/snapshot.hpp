@@ -62,6 +62,9 @@ Snapshot<T> take_snapshot(Form& form, Step<Form>& step, double s) {
     // an interpolant keeps the ties of transmissions less exactly than the ends of a step do
     if (ws.ratios.n > 0 && s > 0 && s < 1 && step.h > 0) settle_ties(form, shot.y), observe(form, t, shot.y, shot.d);
   }
+  if constexpr (!Form::small && !has_tangents<T>) {
+    if (s > 0 && s < 1 && any_massless(form)) settle_massless(form, t, shot.y, shot.d, step.u());
+  }
   for (int k = ws.n_branches; k < ws.n_rates; ++k) shot.rate[k] = form.rate(k, shot.y) + offset_rate(ws, k);
   for (int d = 0; d < ne + nc; ++d) {
     const int k = ws.branch_of[d];

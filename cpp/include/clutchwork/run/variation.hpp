@@ -32,8 +32,8 @@ class Variation {
   using Plain = typename PlainForm<Form>::type;
   template <class X>
   using As = SlopesAs<T, X>;
-  // of a step: how far ahead the change of the slopes with time is looked at
-  static constexpr double ahead = 1e-3;
+  // of a part: how far ahead the change of the slopes with time is looked at, twice; loose tolerances need one look
+  static constexpr double ahead = 1e-3, loose = 1e-8;
   // a direction may miss so much of itself in a part, of rtol: the error of the motion moves derivatives by more
   static constexpr double allowed = 3;
 
@@ -46,6 +46,7 @@ class Variation {
   double at_ = -1, other_at_ = -1;
   bool is_whole_ = false;                      ///< the image has the factor of the whole step
   bool known_ = false;                         ///< the slopes at the start of the next part
+  const double look_once_;                     ///< of a part, ahead of its start
   double reached_[T::seen] = {};               ///< sizes of the directions up to the end of the part that is tried
   bool rows_move_ = true, mass_moves_ = true;  ///< with the numbers of the model
 
@@ -57,7 +58,13 @@ class Variation {
       : form_(own),
         step_(own_step),
         ws_(own.ws),
-        calls_(PlainCalls<Plain, Rodas5P>::all()),
+        calls_{nullptr,
+               PlainCalls<Plain, Rodas5P>::fit,
+               clutchwork::linearize_at<Plain>,
+               observe_inside<Plain>,
+               Rodas5P::stiff,
+               Rodas5P::restart},
+        look_once_(1e-2 * pow(own.ws.options.rtol, 0.4)),
         form(prepared(own.ws)),
         step(form) {
     step.calls = &calls_;
@@ -89,7 +96,7 @@ class Variation {
   double advance(double h) {
     if (other_at_ == 0) swap_jacobians();
     step.t = ws_.time;
-    const double error = calls_.advance(form, step, h);
+    const double error = plain_step(h);
     is_whole_ = true;
     swap_jacobians();
     return error;
@@ -123,12 +130,34 @@ class Variation {
     const StepEnd<double> edge = form.ws.step_start;
     form.ws.step_start = form.ws.step_end, form.ws.step_end = edge;
     form.ws.time = ws_.time;
-    give_end(form.ws.step_start, ws_.step_start), give_end(form.ws.step_end, ws_.step_end);
     if (ws_.options.work) take_values(ws_.work, ws_.n_directions, form.ws.work);
     at_ = 0, other_at_ = -1;
   }
 
  private:
+  /// As Rodas5P::advance, to the same bits, with sums of stages of which each has its own length.
+  double plain_step(double h) {
+    if (!Rodas5P::factor(form, 1 / (Rodas5P::gamma * h))) return infinity;
+    const int n = form.n();
+    double *u = step.u(), *mix = step.slope();
+    step.h = h, step.dense = false;
+    for (int i = 0; i < n; ++i) u[i] = step.y0()[i], step.k(0)[i] = step.f0()[i];
+    each_stage([&](auto stage) {
+      constexpr int s = stage.value;
+      double* k = step.k(s);
+      if (s > 0) {
+        stage_from<s>(step.k(0), step.y0(), u);
+        evaluate(form, step.t + Rodas5P::node[s] * h, u, k);
+        add_stages<s>(step.k(0), mix, h, k);
+      }
+      for (int i = 0; i < n && s < 5; ++i) k[i] += h * Rodas5P::d[s] * step.dt0()[i];
+      Rodas5P::solve(form, k);
+    });
+    form.ws.statistics.evaluations += 7;
+    for (int i = 0; i < n; ++i) step.y1()[i] = u[i] + step.k(7)[i];
+    return error_norm(form, step.k(7), step.y0(), step.y1());
+  }
+
   static Workspace<double>& prepared(Workspace<T>& ws) {
     reflect(ws, *ws.moved.plain, true);
     return *ws.moved.plain;
@@ -197,7 +226,7 @@ class Variation {
   /// A row of derivatives alone.
   template <class X>
   X* row(int i) {
-    return reinterpret_cast<X*>(ws_.moved.slopes + i * form.n());
+    return reinterpret_cast<X*>(ws_.moved.slopes) + i * form.n();
   }
 
   void swap_jacobians() {
@@ -271,10 +300,11 @@ class Variation {
   template <class X>
   [[gnu::noinline]] void slopes_at(double s, const X* y, X* d) {
     const double at = from_ + s * share_, t = step.t + at * step.h;
+    const bool all = Form::full || rows_move_ || ws_.sys.shared > 0;
     T *whole = step_.point(), *made = step_.p(2);
     interpolate(form, step, at, step.point());
-    for (int i = 0; i < form.n(); ++i) whole[i] = As<X>::number(step.point()[i], y[i]);
-    if (Form::full || rows_move_ || ws_.sys.shared > 0) {
+    for (int i = all ? 0 : form.nz(); i < form.n(); ++i) whole[i] = As<X>::number(step.point()[i], y[i]);
+    if (all) {
       evaluate(form_, t, whole, made);
       for (int i = 0; i < form.n(); ++i) d[i] = As<X>::of(made[i]), step.slope()[i] = value(made[i]);
     } else {
@@ -289,7 +319,9 @@ class Variation {
     T* own = step_.p(2);
     double* plain = step.slope();
     inputs_with(ws_, t, whole + nz);
-    for (int i = 0; i < form.n(); ++i) d[i] = X(0), own[i] = T(0), plain[i] = 0;
+    for (int i = 0; i < form.n(); ++i) d[i] = X(0);
+    for (int i = nz; i < form.n(); ++i) own[i] = T(0);
+    for (int i = 0; mass_moves_ && i < form.n(); ++i) plain[i] = 0;
     for (int k = 0; k < ws_.n_branches; ++k) {
       T rate = As<X>::number(form.rate(k, step.point()), form.rate(k, y));
       if (ws_.sys.prescribed > 0) rate += offset_rate(ws_, k);
@@ -349,16 +381,20 @@ class Variation {
     }
   }
 
-  /// Change of the slopes with time along the motion at the start of a part of length h, to second order.
+  /// Change of the slopes with time along the motion at the start of a part of length h: to first order close by where
+  /// that is all that the tolerance sees, else to second order. docs/theory/gradients.md (20)
   template <class X>
   void drift_at_start(double h, const X* start, X* drift) {
     const X* first = row<X>(SlopeRow::first);
     X *near = row<X>(1), *far = row<X>(2);
-    slopes_at(ahead, start, near), slopes_at(2 * ahead, start, far);
-    const double per = 1 / (2 * ahead * h);
+    const bool once = ws_.options.rtol >= loose;
+    const double reach = once ? look_once_ : ahead, per = 1 / (reach * h);
+    slopes_at(reach, start, near);
+    if (!once) slopes_at(2 * reach, start, far);
     for (int i = 0; i < form.n(); ++i) {
-      X x = near[i] * (4 * per);
-      add_times(-3 * per, first[i], x), add_times(-per, far[i], x);
+      X x = near[i] * (once ? per : 2 * per);
+      add_times(once ? -per : -1.5 * per, first[i], x);
+      if (!once) add_times(-0.5 * per, far[i], x);
       drift[i] = x;
     }
   }
@@ -380,12 +416,12 @@ class Variation {
     each_stage([&](auto stage) {
       constexpr int s = stage.value;
       X* k = row<X>(s);
-      if (s > 0) stage_from<s>(start, u);
+      if (s > 0) stage_from<s>(row<X>(0), start, u);
       if (s > 0 && s < 6) slopes_at(Rodas5P::node[s], u, s < 5 ? k : last);
       // the last three stages are at one instant, where the slopes are linear in the derivatives
       if (s > 5) add_linear_at_end(row<X>(s - 1), last);
       for (int i = 0; i < n && (s == 0 || s >= 5); ++i) k[i] = s == 0 ? first[i] : last[i];
-      if (s > 0) add_stages<s>(h, k);
+      if (s > 0) add_stages<s>(row<X>(0), row<X>(SlopeRow::mix), h, k);
       for (int i = 0; i < n && s < 5; ++i) add_times(h * Rodas5P::d[s], drift[i], k[i]);
       solve(k);
     });
@@ -414,31 +450,31 @@ class Variation {
     add_linear(x, d);
     swap_jacobians();
   }
-  /// The derivatives at stage s.
+  /// Where stage s begins, from the rows of those before.
   template <int s, class X>
-  void stage_from(const X* start, X* u) {
-    for (int i = 0; i < form.n(); ++i) {
+  void stage_from(const X* stages, const X* start, X* u) {
+    const int n = form.n();
+    for (int i = 0; i < n; ++i) {
       if constexpr (s >= 6) {
-        u[i] += row<X>(s - 1)[i];
+        u[i] += stages[(s - 1) * n + i];
       } else {
         X x = start[i];
-        for (int j = 0; j < s; ++j) add_times(Rodas5P::a[s][j], row<X>(j)[i], x);
+        for (int j = 0; j < s; ++j) add_times(Rodas5P::a[s][j], stages[j * n + i], x);
         u[i] = x;
       }
     }
   }
   /// k := k + M / h times the stages before.
   template <int s, class X>
-  void add_stages(double h, X* k) {
-    const int nz = form.nz();
-    X* mix = row<X>(SlopeRow::mix);
-    for (int i = 0; i < form.n(); ++i) {
+  void add_stages(const X* stages, X* mix, double h, X* k) {
+    const int n = form.n(), nz = form.nz();
+    for (int i = 0; i < n; ++i) {
       X x = X(0);
-      for (int j = 0; j < s; ++j) add_times(Rodas5P::c[s][j], row<X>(j)[i], x);
+      for (int j = 0; j < s; ++j) add_times(Rodas5P::c[s][j], stages[j * n + i], x);
       mix[i] = x;
     }
     form.add_mass_times(1 / h, mix, k);
-    for (int i = nz; i < form.n(); ++i) add_times(1 / h, mix[i], k[i]);
+    for (int i = nz; i < n; ++i) add_times(1 / h, mix[i], k[i]);
   }
 
   /// Sizes of the components of each direction over those of the motion, to f(component, size of the motion).

@@ -8,10 +8,11 @@ namespace clutchwork {
 template <class T>
 struct Fixed {
   // the history, of which saved states have a copy
-  double time = -infinity;  ///< [s] end of the last step; where it is not the present time there is no history
-  double before = 0;        ///< [s] length of that step, 0: there was none
-  double origin = 0;        ///< [s] where the present grid of steps begins
-  std::int64_t count = 0;   ///< steps on it
+  double time = -infinity;   ///< [s] end of the last step; where it is not the present time there is no history
+  double before = 0;         ///< [s] length of that step, 0: there was none
+  double origin = 0;         ///< [s] where the present grid of steps begins
+  std::int64_t count = 0;    ///< steps on it
+  std::int64_t impacts = 0;  ///< since the last of them
   T *gain = nullptr, *state_gain = nullptr, *given_gain = nullptr;  ///< change of speeds, states, prescribed speeds
   T* given = nullptr;                                               ///< prescribed speeds now
   T* kept = nullptr;    ///< of each direction: slope of its torque that is in the matrix [N m s/rad]
@@ -45,6 +46,11 @@ struct Fixed {
   T* instant = nullptr;                    ///< [s] of each contact: when its mode changes
   int *side = nullptr, *list = nullptr, *box = nullptr, *mode = nullptr;
 
+  // of each load: its impulse by changes of speeds, of prescribed ones, by impulses of contacts; without these
+  T *load_by_speed = nullptr, *load_by_given = nullptr, *load_reach = nullptr, *load_free = nullptr;
+  T *load_matrix = nullptr, *load_off = nullptr;   ///< of those at a bound: their system, what they are off
+  int *follower = nullptr, *load_pivot = nullptr;  ///< which these are; order of the rows
+
   template <class P, class A>
   static void lay_out(P& p, A& a, const Sizes& n) {
     const bool has = !has_tangents<T> && n.fixed;
@@ -62,6 +68,10 @@ struct Fixed {
     a.scratch(p.impulse, nc), a.scratch(p.gradient, nc), a.scratch(p.lower, nc), a.scratch(p.upper, nc);
     a.scratch(p.weight, nc), a.scratch(p.end_slip, nc), a.scratch(p.solved, nc), a.scratch(p.free_factor, nc * nc);
     a.scratch(p.kinetic, 2 * nc), a.scratch(p.limit, 2 * nc), a.scratch(p.share, nc), a.scratch(p.instant, nc);
+    const auto nl = has ? n.loads : 0;
+    a.scratch(p.load_by_speed, nl * nv), a.scratch(p.load_by_given, nl * np), a.scratch(p.load_reach, nl * nc);
+    a.scratch(p.load_free, nl), a.scratch(p.load_matrix, nl * nl), a.scratch(p.load_off, nl);
+    a.take(p.follower, nl), a.take(p.load_pivot, nl);
     a.take(p.side, nc), a.take(p.list, nc), a.take(p.box, nc), a.take(p.mode, nc);
   }
 };

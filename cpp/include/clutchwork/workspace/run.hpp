@@ -83,6 +83,12 @@ struct Observed {
   }
 };
 
+/// Numbers of a row that somebody reads, in memory of the caller; n = -1: all.
+struct ReadNumbers {
+  const std::int64_t* place = nullptr;
+  std::int64_t n = -1;
+};
+
 /// What a row of output is made from.
 template <class T>
 struct Output {
@@ -93,6 +99,7 @@ struct Output {
   T* since = nullptr;                     ///< work of each of them since the start of the step
   int is_rough = -1;                      ///< whether the cubics miss much inside of the step; -1: not known
   int lacks_angles = 0, lacks_work = 0;   ///< whether rows lack them: 1 inside of steps, 2 everywhere
+  ReadNumbers read, inside;               ///< what is read of rows; of those in steps in which nothing happens
   double until = -1;                      ///< share of the step of the last row in it, -1: it has none
   T *whole = nullptr, *halves = nullptr;  ///< work of each branch over a step and its halves
   double shown = 0;                       ///< [s] last row in a step

@@ -32,7 +32,7 @@ def draw_lines(pen: Pen, scene: Scene) -> None:
 
 
 def needed(scene: Scene, member: str) -> set[Edge]:
-    """Lines of a member without ends that nobody joins."""
+    """Lines of a member without unconnected ends."""
     keep = {symbol_end for s in scene.plan.symbols.values() for symbol_end in (s.first, s.second)}
     keep |= set(scene.plan.gates.values())
     for body in scene.plan.bodies:

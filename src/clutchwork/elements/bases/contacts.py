@@ -1,4 +1,4 @@
-"""What contacts have in common, and composites that are drawn around one."""
+"""Common base of contacts, and of composites that are built around one."""
 
 from __future__ import annotations
 

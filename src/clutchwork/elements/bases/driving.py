@@ -1,4 +1,4 @@
-"""Torques that are given, and whether they drive their shaft."""
+"""Prescribed torques, and whether they drive their shaft."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ def drives_by(torques: Iterable[float]) -> bool:
 
 
 def signal_drives(torque: Any) -> bool:
-    """Whether a torque given over time drives or loads its shaft; one known only in the run counts as a drive."""
+    """Whether a torque over time drives or loads its shaft; one that is known only during the run counts as a drive."""
     if isinstance(torque, Signal):
         return drives_by([reached.value for reached in extremes(torque)] or [1.0])
     return not isinstance(torque, Real) or float(torque) > 0.0

@@ -1,4 +1,4 @@
-"""What all elements have in common that turn work into heat."""
+"""Common base of all elements that turn work into heat."""
 
 from __future__ import annotations
 

@@ -60,6 +60,17 @@ def _zero(function: Callable[[float], float], low: float, high: float) -> float:
     return low
 
 
+def twist_of(stiffness: float, modes: int) -> dict[str, float]:
+    """The twist from end to end by the torques of the springs on the amplitudes: minus twice all odd ones."""
+    made = {f"spring_{j}.spring_torque": -2.0 / _modal_stiffness(stiffness, j) for j in range(1, modes + 1, 2)}
+    opposite = compliances(stiffness, modes)[1]
+    return made | ({"rest_spring_opposite.spring_torque": -2.0 * opposite} if opposite > 0.0 else {})
+
+
+def _modal_stiffness(stiffness: float, j: int) -> float:
+    return j * j * pi * pi * stiffness / 2.0
+
+
 class Modal:
     """The parts of a shaft by its modes."""
 
@@ -86,7 +97,7 @@ class Modal:
         for j in range(1, modes + 1):
             mode = self._node(f"mode_{j}", self._inertia / 2.0)
             yield mode
-            yield self._spring(f"spring_{j}", mode, j * j * pi * pi * self._stiffness / 2.0)
+            yield self._spring(f"spring_{j}", mode, _modal_stiffness(self._stiffness, j))
             (odd if j % 2 else even).append(mode)
         for label, nodes, compliance in zip(
             ("equal", "opposite"), (even, odd), compliances(self._stiffness, modes), strict=True

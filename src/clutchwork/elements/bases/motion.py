@@ -1,4 +1,4 @@
-"""What all prescribed motions have in common."""
+"""Common base of all prescribed motions."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ class MotionError(ValueError):
 
 @family
 class PrescribedMotion(Component):
-    """A motion that is given, whatever torque it takes."""
+    """A prescribed motion, regardless of the torque it takes."""
 
     # whether its speed is an integral, which begins with that of the shaft wherever a run does
     integrates: ClassVar[bool] = False
@@ -46,7 +46,7 @@ class PrescribedMotion(Component):
         raise NotImplementedError
 
     def drives(self) -> bool:
-        """Whatever torque it takes."""
+        """Regardless of the torque it takes."""
         return True
 
     def begins_with_shaft(self) -> bool:

@@ -1,4 +1,4 @@
-"""Inputs and parameters that openings for oil share: docs/theory/hydraulics.md (2)."""
+"""Inputs and parameters that all orifices for oil share: docs/theory/hydraulics.md (2)."""
 
 from __future__ import annotations
 

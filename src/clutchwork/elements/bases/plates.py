@@ -1,4 +1,4 @@
-"""Faults of elements with friction plates: what triggers them."""
+"""Triggers of faults of elements with friction plates."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What rigid stops have in common."""
+"""Common base of rigid stops."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ if TYPE_CHECKING:
 
 @family
 class Stop(Heating):
-    """A contact that exists at the ends of a way alone; `initial_states` is its position at the start."""
+    """A contact that exists only at the ends of a travel; `initial_states` is its position at the start."""
 
     # it has no load, so its coefficient does not matter
     friction: ClassVar[Law] = Coulomb(static=0.1, kinetic=0.1)  # type: ignore[misc]

@@ -1,4 +1,4 @@
-"""A brake or clutch that is full and is pulled through all the same."""
+"""A brake or clutch at full pressure that slips nevertheless."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ GROWTH = 0.1
 
 @run_rule(NAME)
 def full_and_slips(look: Look) -> Iterator[Hint]:
-    """A brake or clutch that something actuates, at its largest load, and whose slip grows all the same."""
+    """An actuated brake or clutch whose slip grows although it is at its largest load."""
     told = {name for hint in never_locks(look) for name in hint.elements}
     for contact, branch in pressed(look):
         if branch.name in told or not look.actuated(contact):

@@ -25,7 +25,7 @@ NEAREST = 0.2
 
 @run_rule(NAME)
 def never_locks(look: Look) -> Iterator[Hint]:
-    """A clutch between two shafts that never locks: full to the end, or let go shortly before."""
+    """A clutch between two shafts that never locks: at full pressure to the end, or released shortly before locking."""
     for contact, branch in pressed(look):
         if HOUSING in branch.direction or np.any(look.locked[:, contact]):
             continue

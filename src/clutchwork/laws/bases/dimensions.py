@@ -28,13 +28,15 @@ SAME = {"add": "adds", "subtract": "subtracts", "smaller": "compares", "larger":
 SAME |= {"less": "compares"}
 
 
-def mistakes_of_units(program: Program, given: Mapping[str, str]) -> list[Mistake]:
-    """What does not fit, for a slip of shafts or else of masses.
+def mistakes_of_units(
+    program: Program, given: Mapping[str, str], slips: Sequence[str] = ("rad/s", "m/s")
+) -> list[Mistake]:
+    """What does not fit whichever unit the slip has, that of shafts or that of masses.
 
-    Parameters: given, the unit of each number that has one.
+    Parameters: given, the unit of each number that has one; slips, the units that the slip may have.
     """
     found = list[Mistake]()
-    for slip in ("rad/s", "m/s"):
+    for slip in slips:
         known = {SLIP: slip, TEMPERATURE: "K", PRESSURE: "Pa", **dict.fromkeys(program.states, "1"), **given}
         wrong = _mistakes(program, {name: powers_of(unit) for name, unit in known.items()})
         if not wrong:
@@ -83,9 +85,14 @@ def _unit(operation: str, of: Sequence[Powers], exponent: float | None) -> tuple
     """The unit of a result, and what is wrong."""
     if operation in PURE or operation == "power":
         return _of_function(operation, of, exponent)
-    if operation.endswith("_product"):
-        product, _ = _unit("multiply", of[1:], None)
-        return _unit(operation.removesuffix("_product"), (of[0], product), None)
+    sort, _, joined = operation.partition("_")
+    if joined in ("product", "quotient"):
+        inner, _ = _unit("multiply" if joined == "product" else "divide", of[1:], None)
+        return _unit(sort, (of[0], inner), None)
+    if operation == "bell":
+        root, _ = _unit("divide", of, None)
+        square, _ = _unit("multiply", (root, root), None)
+        return _of_function("exp", (square,), None)
     if operation in SAME:
         first, second = of[-2:]
         made = second if first is None else first

@@ -76,7 +76,7 @@ class Source(NamedTuple):
 
 
 class FormulaGraph:
-    """The numbers that expressions are made of, each once: what two of them have in common is computed once."""
+    """The operations of all expressions, each once: common subexpressions are computed once."""
 
     def __init__(self, names: Collection[str], forward: bool) -> None:
         self.names = names  # that may be read
@@ -109,7 +109,7 @@ class FormulaGraph:
         return self._fused(name, list(of), parts, source)
 
     def _fused(self, name: str, of: list[int], parts: Sequence[FormulaNode], source: Source) -> int:
-        """An operation as one word with another where that exists, to the same bits."""
+        """An operation fused with another one if the core has that, to the same bits."""
         last = parts[-1]
         if name in ("multiply", "divide") and "negate" in (parts[0].operation, last.operation):
             # the sign of a product or quotient is put behind it
@@ -118,11 +118,15 @@ class FormulaGraph:
             return self.operation("negate", [self.operation(name, of, source)], source)
         if name in ("add", "subtract") and last.operation == "negate":
             return self.operation("subtract" if name == "add" else "add", [of[0], last.of[0]], source)
-        if name == "add" and parts[0].operation == "multiply" and last.operation != "multiply":
+        if name == "add" and parts[0].operation in JOINED and last.operation not in JOINED:
             of, last = of[::-1], parts[0]
-        if name in ("add", "subtract") and last.operation == "multiply":
-            return self.add(FormulaNode(f"{name}_product", (of[0], *last.of)), source)
+        if name in ("add", "subtract") and last.operation in JOINED:
+            return self.add(FormulaNode(f"{name}_{JOINED[last.operation]}", (of[0], *last.of)), source)
         if name in ("exp", "exp_behind") and parts[0].operation == "negate":
+            square = self.nodes[parts[0].of[0]]
+            root = self.nodes[square.of[0]] if square.operation == "multiply" and len({*square.of}) == 1 else None
+            if root is not None and root.operation == "divide":
+                return self.add(FormulaNode("bell", root.of), source)
             return self.add(FormulaNode(name.replace("exp", "fade"), (parts[0].of[0], *of[1:])), source)
         return self.add(FormulaNode(name, tuple(of)), source)
 
@@ -131,7 +135,7 @@ class FormulaGraph:
         return self._moving[i]
 
     def size(self, i: int, source: Source) -> int:
-        """The absolute value; of what goes forward alone it is smooth across zero, as the core asks for."""
+        """The absolute value; for a slip in the direction of sliding it is smooth across zero, as the core requires."""
         node = self.nodes[i]
         if self.forward and node.name == SLIP:
             return i
@@ -165,6 +169,8 @@ class FormulaGraph:
         return self.operation("multiply", [square, base], source) if count % 2 else square
 
 
+# what a sum or a difference takes in
+JOINED = {"multiply": "product", "divide": "quotient"}
 FOLDED: dict[str, Callable[..., float]] = {
     "add": lambda a, b: a + b,
     "subtract": lambda a, b: a - b,

@@ -1,4 +1,4 @@
-"""What laws given by expressions have in common: numbers of their own names, and what is wrong with them."""
+"""Common base of laws given by expressions: named numbers, and their checks."""
 
 from __future__ import annotations
 
@@ -17,8 +17,9 @@ from clutchwork.declare.pints import is_quantity
 from clutchwork.declare.pints import powers_of as powers_of_pint
 from clutchwork.declare.schema import specs
 from clutchwork.laws.bases.dimensions import mistakes_of_units
-from clutchwork.laws.bases.expression import FUNCTIONS, INPUTS, PRESSURE, SLIP, TEMPERATURE
-from clutchwork.laws.bases.program import Program, Texts, compiled
+from clutchwork.laws.bases.expression import FUNCTIONS, INPUTS, PRESSURE, TEMPERATURE
+from clutchwork.laws.bases.jumps import first_jump, where
+from clutchwork.laws.bases.program import OPERATIONS, Program, Texts, compiled
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence
@@ -49,11 +50,12 @@ class Number(NamedTuple):
 
 @family
 class FormulaLaw(Law):
-    """A law whose equations are expressions in the model, over numbers that it names: `v_s="0.1 rad/s"`."""
+    """A law whose equations are expressions of the model over named numbers: `v_s="0.1 rad/s"`."""
 
     # a call may have numbers of any name
     takes_numbers: ClassVar[bool] = True
     numbers: ClassVar[tuple[Number, ...]] = ()
+    code_words: ClassVar[tuple[str, ...]] = OPERATIONS  # by whose numbers the core reads its code
     written: ClassVar[type | None] = None  # what it was made from, with a field for each number
 
     expression: str = formula(
@@ -113,27 +115,50 @@ class FormulaLaw(Law):
         found = [(one.field, one.message, one.remedy) for one in mistakes]
         if program is None:
             return found
-        units_given = {one.name: one.unit for one in type(self).numbers if one.unit != "1"}
-        # where no number has a unit, all are in those of SI
-        wrong = mistakes_of_units(program, units_given) if units_given else []
-        found += [(one.field, one.message, one.remedy) for one in wrong]
+        found += self._of_units(program, "rad/s", "m/s")
         found += _unread(self, program)
         return found or next(self.faults(program), [])
 
+    def slip_problems(self, unit: str) -> Found:
+        program, _ = self._program
+        found = [] if program is None else self._of_units(program, unit)
+        kind = "shafts" if unit == "rad/s" else "masses"
+        return [(name, f"{fault}, with the slip of {kind} [{unit}]", remedy) for name, fault, remedy in found]
+
+    def _of_units(self, program: Program, *slips: str) -> Found:
+        """What does not fit; where no number has a unit, all are in those of SI."""
+        given = {one.name: one.unit for one in type(self).numbers if one.unit != "1"}
+        wrong = mistakes_of_units(program, given, slips) if given else []
+        return [(one.field, one.message, one.remedy) for one in wrong]
+
     def advice(self) -> Found:
         spare = [name for name in INPUTS[1:] if getattr(self, name) is not None and not self.reads(name)]
-        return [(name, "is in no expression", "remove it, or use it in an expression") for name in spare]
+        found = [(name, "is in no expression", "remove it, or use it in an expression") for name in spare]
+        jump = self.jump()
+        if jump:
+            remedy = "make it continuous, or take a FrictionTable, whose points end steps"
+            found.append(("expression", f"{jump}, where no step ends and gradients do not exist", remedy))
+        return found
+
+    def jump(self) -> str:
+        """Where it jumps, in words, within the inputs at which it is checked; empty: nowhere."""
+        program, _ = self._program
+        return "" if program is None else first_jump(program, self.places(program), self.slips())
+
+    def slips(self) -> tuple[float, ...]:
+        """Slips at which it is checked, rising."""
+        return SLIPS
 
     def values(self) -> dict[str, float]:
         """Its numbers by name."""
         return {one.name: float(getattr(self, one.name)) for one in type(self).numbers}
 
     def faults(self, program: Program) -> Iterator[Found]:
-        """What is wrong with the values of a formula, at the places where it is looked at."""
+        """What is wrong with the values of a formula at the points where it is checked."""
         raise NotImplementedError
 
     def places(self, program: Program) -> list[dict[str, float]]:
-        """Inputs other than the slip at which it is looked at."""
+        """Inputs other than the slip at which it is checked."""
         warm: Sequence[float] = TEMPERATURES if TEMPERATURE in program.reads else (300.0,)
         pressed: Sequence[float] = PRESSURES if PRESSURE in program.reads else (1e5,)
         if isinstance(self.temperature, Real):
@@ -144,7 +169,7 @@ class FormulaLaw(Law):
 
 
 def _text(value: Any) -> Any:
-    """What is written of an expression; nothing where it is none."""
+    """The text of an expression; empty if it is not one."""
     return value if value is None or isinstance(value, str | int | float) else ""
 
 
@@ -155,14 +180,6 @@ def no_number(program: Program, registers: Sequence[float], at: Mapping[str, flo
         return []
     remedy = "keep it away from division by zero, and from roots, logarithms and powers of negative numbers"
     return [(source.field, f"has no finite value in {source} {where(program, at)}", remedy)]
-
-
-def where(program: Program, at: Mapping[str, float]) -> str:
-    """Values of the inputs in words: "at a slip of 3 rad/s and 400 K"."""
-    said = [f"a slip of {at.get(SLIP, 0.0):g} rad/s"]
-    said += [f"{at[TEMPERATURE]:g} K"] if TEMPERATURE in program.reads else []
-    said += [f"{at[PRESSURE]:g} Pa"] if PRESSURE in program.reads else []
-    return f"at {' and '.join(said)}"
 
 
 def _unread(law: FormulaLaw, program: Program) -> Found:
@@ -185,7 +202,7 @@ def _is_free(name: Any) -> bool:
 
 
 def _unit(value: Any) -> str:
-    """The unit of SI of a number as it is given; 1 where it has none, or none that is known."""
+    """The SI unit of a number as it is given; 1 if it has none, or an unknown one."""
     if isinstance(value, Mapping):
         value = f"1 {value.get('unit', '')}"
     try:
@@ -222,7 +239,7 @@ def _power(name: str, power: int) -> str:
 
 @lru_cache(1000)
 def _with_numbers(cls: Any, numbers: tuple[Number, ...]) -> type:
-    """A declaration with a field for each number; it counts as the one that it is made from."""
+    """A declaration with a field for each number, which counts as the one it is derived from."""
     fields = {one.name: param(one.unit, f"{one.name} of the formula") for one in numbers}
     body = {
         **fields,

@@ -10,7 +10,7 @@ STEPS, NEAR, MOVE = 30, 1e-9, 1e-7
 
 
 def root(function: Callable[[Vector], Vector], start: Sequence[float]) -> Vector | None:
-    """Where a function of as many numbers is zero, by Newton's method; None where that finds nothing."""
+    """Root of a square system by Newton's method; None if it does not converge."""
     x, size = list(start), 0.0
     for _ in range(STEPS):
         value = function(x)
@@ -34,7 +34,7 @@ def _slope(function: Callable[[Vector], Vector], x: Vector, i: int, value: Vecto
 
 
 def _solved(columns: Sequence[Vector], right: Vector) -> Vector | None:
-    """Gaussian elimination of what the columns make of the right side."""
+    """Gaussian elimination: solves columns times x = right side."""
     n = len(right)
     rows = [[column[i] for column in columns] + [right[i]] for i in range(n)]
     for k in range(n):

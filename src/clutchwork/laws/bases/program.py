@@ -18,9 +18,9 @@ Points = tuple[tuple[float, float, float], ...]
 
 # what the core does, in the order of its numbers there: declared.gen.hpp has them from here
 OPERATIONS = (
-    "add", "subtract", "add_product", "subtract_product", "multiply", "divide", "negate", "size", "smaller", "larger",
-    "power", "root", "exp", "exp_behind", "fade", "fade_behind", "log", "tanh", "atan", "sin", "cos", "sign", "less",
-    "pick",
+    "add", "subtract", "add_product", "subtract_product", "add_quotient", "subtract_quotient", "multiply", "divide",
+    "negate", "size", "smaller", "larger", "power", "root", "exp", "exp_behind", "fade", "fade_behind", "bell", "log",
+    "tanh", "atan", "sin", "cos", "sign", "less", "pick",
 )  # fmt: skip
 # numbers that a formula may have at once: what it reads, its constants and its results
 MOST_REGISTERS = 64
@@ -56,18 +56,18 @@ class Program(NamedTuple):
 
     @property
     def head(self) -> Points:
-        """Registers of both coefficients and what the first needs; how many numbers and constants, what rates need."""
+        """Registers of both coefficients, counts of numbers and constants, instructions of the first and of rates."""
         first = (self.coefficient, self.at_rest, self.for_coefficient)
         second = (len(self.names), len(self.constants), self.for_rates)
         return tuple((float(a), float(b), float(c)) for a, b, c in (first, second))
 
     @property
     def rate_words(self) -> Points:
-        """A word that is always there, then the register of each rate."""
+        """A dummy word, then the register of each rate."""
         return ((0.0, 0.0, 0.0), *((float(register), 0.0, 0.0) for register in self.rates))
 
     def run(self, given: Mapping[str, float]) -> list[float]:
-        """All registers for the values of what is read, as doubles; nothing is refused."""
+        """All registers for given inputs, as doubles, without checks."""
         start = [given.get(name, 0.0) for name in (*INPUTS, *self.states, *self.names)]
         registers = [*map(float, start), *self.constants]
         for node in self.nodes:
@@ -82,20 +82,24 @@ class Program(NamedTuple):
 
 
 def _computed(operation: str, of: Sequence[float]) -> float:
-    """What the core computes, round-off of its functions apart."""
+    """What the core computes, except for round-off of its functions."""
     try:
         return CALLS[operation](*of)
-    except ZeroDivisionError:
-        return math.nan if of[0] == 0.0 or math.isnan(of[0]) else math.copysign(math.inf, of[0])
     except (OverflowError, ValueError):
         return math.inf if operation in ("exp", "exp_behind", "power", "fade", "fade_behind") else math.nan
+
+
+def _quotient(a: float, b: float) -> float:
+    if b == 0.0:
+        return math.nan if a == 0.0 or math.isnan(a) else math.copysign(math.inf, a)
+    return a / b
 
 
 CALLS: dict[str, Callable[..., float]] = {
     "add": lambda a, b: a + b,
     "subtract": lambda a, b: a - b,
     "multiply": lambda a, b: a * b,
-    "divide": lambda a, b: a / b,
+    "divide": _quotient,
     "negate": lambda a: -a,
     "size": abs,
     "smaller": min,
@@ -106,6 +110,9 @@ CALLS: dict[str, Callable[..., float]] = {
     "exp": math.exp,
     "add_product": lambda a, b, c: a + b * c,
     "subtract_product": lambda a, b, c: a - b * c,
+    "add_quotient": lambda a, b, c: a + _quotient(b, c),
+    "subtract_quotient": lambda a, b, c: a - _quotient(b, c),
+    "bell": lambda a, b: math.exp(-_quotient(a, b) * _quotient(a, b)),
     "fade": lambda a: math.exp(-a),
     "fade_behind": lambda a, slip: math.exp(min(-a, HIGHEST) if slip < 0.0 else -a),
     "exp_behind": lambda a, slip: math.exp(min(a, HIGHEST) if slip < 0.0 else a),
@@ -121,7 +128,7 @@ CALLS: dict[str, Callable[..., float]] = {
 
 
 class Texts(NamedTuple):
-    """What is written of a law."""
+    """The texts of a law."""
 
     expression: Any
     at_rest: Any
@@ -183,7 +190,7 @@ def _laid_out(graph: FormulaGraph, roots: Sequence[int], states: tuple[str, ...]
 
 
 def _collect(graph: FormulaGraph, root: int, needed: list[int], seen: set[int]) -> None:
-    """What a number follows from, before it."""
+    """Collect the operands of a node before the node itself."""
     if root in seen:
         return
     for part in graph.nodes[root].of:

@@ -1,4 +1,4 @@
-"""The Stribeck curve that many friction laws share, and rules that several of them have in common."""
+"""The Stribeck curve that many friction laws share, and checks that several of them need."""
 
 from __future__ import annotations
 
@@ -73,7 +73,7 @@ def element_problems(elements: Points, fewest: int, most: int) -> Found:
 
 
 def passivity_advice(law: StribeckCurve, damping: float, order: float = 1.0) -> Found:
-    """Bristles with so much damping that they can give energy away: docs/theory/friction-laws.md (17, 23).
+    """Bristles with so much damping that they can generate energy: docs/theory/friction-laws.md (17, 23).
 
     Source: N. Barabanov, R. Ortega 2000, doi:10.1109/9.847131.
     """

@@ -1,4 +1,4 @@
-"""What tables of friction coefficients have in common: how they interpolate, and what is wrong with their points."""
+"""Common base of tables of friction coefficients: interpolation, and checks of their points."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ Found = list[tuple[str, str, str]]
 
 
 def beyond_the_ends() -> str:
-    """The choice that every table of coefficients has of what it does beyond its ends."""
+    """How a table of coefficients continues beyond its ends."""
     chosen: str = choice(
         "beyond the ends: continued by the slope there until it falls to zero, kept at the nearest value, or the run"
         " ends with an error",
@@ -77,7 +77,7 @@ def crossing(static: Sequence[float], kinetic: Sequence[float], unit: str, place
 
 
 def slip_axis(field: str, first: float, unit: str) -> Found:
-    """A table over the slip that does not start where every engagement ends."""
+    """A table over the slip that does not start at zero slip, where every engagement ends."""
     if first == 0.0:
         return []
     fault = f"starts at {first:g} {unit}, must start at 0"

@@ -27,7 +27,7 @@ if TYPE_CHECKING:
 @experiment
 @dataclass(frozen=True)
 class Memory(Experiment):
-    """Whether a contact remembers where it turned round before.
+    """Whether a contact remembers its earlier reversals.
 
     Before sliding, a body is moved along a large loop; on the way up it turns back and returns, which makes a minor
     loop. With non-local memory the minor loop closes, and the force goes on as if it had never been.

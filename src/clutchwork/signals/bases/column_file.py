@@ -1,8 +1,8 @@
 """One column of a CSV file over its time column.
 
 A file without quotes whose lines all have as many cells as the first one is read at once. Any other is read cell by
-cell, which also finds the lines and columns of what is wrong. Messages say where, never what is
-written there: a model may name a file that is none of its own.
+cell, which also finds the lines and columns of what is wrong. Messages give the place, never the content: a model may
+name a file that does not belong to it.
 """
 
 from __future__ import annotations
@@ -44,7 +44,7 @@ COMMA, NEWLINE, RETURN = 44, 10, 13
 
 @dataclass(frozen=True)
 class ColumnRequest:
-    """What is asked of a file: its path as it was given, the names of its columns, and a factor on the values."""
+    """A request to a file: its path as given, the names of its columns, and a factor on the values."""
 
     path: str
     time: str
@@ -103,7 +103,7 @@ def _scaled(table: Array, scales: tuple[Scale, Scale], wanted: ColumnRequest) ->
 
 
 def _column(sheet: NumericSheet, wanted: ColumnRequest) -> ColumnValues | None:
-    """A column of a file that was read before; None where its times need another look."""
+    """A column of a file that was read before; None if its times need checking again."""
     time, column = _heads(sheet.header, wanted)
     places = [sheet.header.index(time.text), sheet.header.index(column.text)]
     if not sheet.is_plain(places[0]):
@@ -236,7 +236,7 @@ def in_si(table: Array, heads: tuple[ColumnHead, ColumnHead], wanted: ColumnRequ
 
 
 def names_of(path: Path) -> list[str]:
-    """The first line of a file; none where it cannot be read, for other defects show when its columns are."""
+    """The first line of a file; None if it cannot be read: other defects show when its columns are read."""
     try:
         with open_regular(path, MOST_BYTES) as file, with_commas(file) as plain, as_text(plain) as text:
             return _opened(text)[0]

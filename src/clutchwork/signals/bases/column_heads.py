@@ -1,4 +1,4 @@
-"""Heads of columns in CSV files, such as `c1 [bar]`: which one a name means, and what its unit is worth in SI."""
+"""Heads of columns in CSV files, such as `c1 [bar]`: which one a name means, and the factor of its unit to SI."""
 
 from __future__ import annotations
 

@@ -11,7 +11,7 @@ from clutchwork.signals.table import Table
 
 @explained("cw.drive_cycle", stages="[(10.0, 5.0, 3.0)]")
 def drive_cycle(stages: Sequence[tuple[float, float, float]], *, start: float = 0.0) -> Table:
-    """A speed over time as a table, for a `Driver`: from rest to a speed, which is held, and on to the next one.
+    """A speed over time as a table, for a `Driver`: ramps from rest to each speed in turn, each of which is held.
 
     Parameters: stages, rows of the speed [m/s], the time to reach it [s] and the time that it is held [s]; start, time
     at which the first one begins [s]. A cycle from a file is a `Column`.

@@ -27,8 +27,8 @@ class Reached(NamedTuple):
 def extremes(signal: Signal) -> Iterator[Reached]:
     """Values of a signal at and after 0 s where one of its pieces begins, ends or turns; none of one set from outside.
 
-    They hold the smallest and the largest value of every signal whose pieces are a cubic or one wave, but for a cubic
-    without end.
+    They hold the smallest and the largest value of every signal whose pieces are a cubic or one wave, except for a
+    cubic without end.
     """
     pieces, period = signal.segments(), signal.repeats()
     ends = [piece.start for piece in pieces[1:]]

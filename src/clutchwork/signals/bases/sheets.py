@@ -43,7 +43,7 @@ _SHEETS: ContextVar[dict[str, NumericSheet] | None] = ContextVar("sheets", defau
 
 @contextmanager
 def one_reading() -> Iterator[None]:
-    """What is read inside is of one state of each file."""
+    """Files that are read inside are read in one state."""
     token = _SHEETS.set({})
     try:
         yield
@@ -57,7 +57,7 @@ def known(where: str) -> NumericSheet | None:
 
 
 def keep(where: str, size: int, header: list[str], lines: Iterator[list[str]]) -> NumericSheet | None:
-    """The sheet of a file of a size, kept for the next column; None where it has other cells, or nobody reads more."""
+    """The sheet of a file, kept for the next column; None if it has other cells, or no further column is read."""
     sheets = _SHEETS.get()
     if sheets is None or size > MOST_BYTES:
         return None

@@ -82,8 +82,7 @@ def moved(piece: Segment, start: float) -> Segment:
 def _filtered(piece: Segment, rate: float, state: float) -> Segment:
     """Particular solution of cubic and wave, and what is left of the state, decaying.
 
-    Of a cubic u that is u less its first derivative over rate, plus its second over rate^2, less its third over
-    rate^3.
+    For a cubic u: u - u'/rate + u''/rate^2 - u'''/rate^3.
     """
     steady = list(piece[1:5])
     derivative = steady

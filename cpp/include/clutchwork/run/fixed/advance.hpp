@@ -1,6 +1,7 @@
 #pragma once
 #include <clutchwork/run/advance.hpp>
 #include <clutchwork/run/fixed/step.hpp>
+#include <clutchwork/run/fixed/stops.hpp>
 
 /// A run with fixed steps: docs/theory/fixed-steps.md
 namespace clutchwork::fixed {
@@ -48,7 +49,7 @@ inline Status begin(Run& ws, Sink& sink) {
   if (status != Status::done) return status;
   Fixed<double>& f = ws.fixed;
   f.time = f.origin = ws.time;
-  f.before = 0, f.count = 0;
+  f.before = 0, f.count = f.impacts = 0;
   for (int p = 0; p < ws.sys.prescribed; ++p) f.given[p] = ws.in.prescribed[p];
   for (int i = 0; i < ws.sys.speeds; ++i) f.gain[i] = 0;
   for (int i = 0; i < ws.sys.states; ++i) f.state_gain[i] = 0;
@@ -82,15 +83,10 @@ inline Status what_is_spent(const Run& ws, const Sink& sink) {
   return ws.poll.stops() ? Status::interrupted : Status::running;
 }
 
-/// One step onto the grid, or onto the end where that comes before. `running`: the run goes on.
-inline Status take_step(Run& ws, double t_end, Sink& sink) {
+/// The step that was made becomes the present: its rows, its energies, its modes and pieces.
+inline Status finish_step(Run& ws, double h, double end, Sink& sink) {
   Fixed<double>& f = ws.fixed;
-  const double step = ws.options.step, grid = f.origin + double(f.count + 1) * step;
-  const bool last = grid > t_end - 1e-9 * step, cut = grid > t_end + 1e-9 * step;
-  const double end = last ? t_end : grid, h = cut ? t_end - ws.time : step, start = ws.time;
-  const Status made = make_step(ws, start, h, end);
-  if (made != Status::running) return made;
-  const Look look{start, h, f.change, f.given_change, f.state_change, f.mean};
+  const Look look{ws.time, h, f.change, f.given_change, f.state_change, f.mean};
   const Status shown = emit_step(ws, look, end, sink);
   if (shown != Status::running) return shown;
   take_over(ws, look);
@@ -99,7 +95,36 @@ inline Status take_step(Run& ws, double t_end, Sink& sink) {
   for (int d = 0; d < ws.n_directions; ++d) f.torque[d] = f.mean[d];
   for (int i = 0; i < 2 * ws.sys.contacts; ++i) f.held[i] = f.limit[i];
   ws.time = f.time = end;
-  ++f.count;
+  return Status::running;
+}
+
+/// Up to a meeting inside the step that was made, and the impact there.
+inline Status take_impact(Run& ws, const Meeting& met, double h, Sink& sink) {
+  const double start = ws.time, part = met.share * h;
+  if (part > 1e-9 * ws.options.step) {
+    const Status made = make_step(ws, start, part, start + part);
+    if (made != Status::running) return made;
+    const Status shown = finish_step(ws, part, start + part, sink);
+    if (shown != Status::running) return shown;
+  }
+  return strike(ws, met);
+}
+
+/// One step onto the grid, onto the end where that comes before, or up to an impact. `running`: the run goes on.
+inline Status take_step(Run& ws, double t_end, Sink& sink) {
+  Fixed<double>& f = ws.fixed;
+  const double step = ws.options.step, grid = f.origin + double(f.count + 1) * step;
+  const bool last = grid > t_end - 1e-9 * step, cut = grid > t_end + 1e-9 * step;
+  const double end = last ? t_end : grid, h = cut || f.impacts > 0 ? end - ws.time : step;
+  Status status = make_step(ws, ws.time, h, end);
+  if (status != Status::running) return status;
+  const Meeting met = first_meeting(ws, h);
+  const bool strikes = met.contact >= 0 && f.impacts < most_bounces + ws.sys.contacts;
+  status = strikes ? take_impact(ws, met, h, sink) : finish_step(ws, h, end, sink);
+  // what an impact leaves of a step may be none
+  if (status != Status::running || end - ws.time > 1e-9 * step) return status;
+  ws.time = f.time = end;
+  ++f.count, f.impacts = 0;
   if (cut) f.origin = end, f.count = 0;
   return Status::running;
 }

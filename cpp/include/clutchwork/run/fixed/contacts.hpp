@@ -1,16 +1,16 @@
 #pragma once
 #include <clutchwork/components/branch.hpp>
 #include <clutchwork/contacts/sticking.hpp>
+#include <clutchwork/contacts/stops.hpp>
 #include <clutchwork/run/fixed/boxes.hpp>
+#include <clutchwork/run/fixed/loads.hpp>
 #include <clutchwork/run/fixed/prepare.hpp>
 
 /// Contacts over one step: what each can hold, their impulses and their modes. docs/theory/fixed-steps.md
 namespace clutchwork::fixed {
 
-/// How many rounds of boxes there are at most: a contact goes from one box to the other twice.
-inline constexpr int most_rounds = 4;
-/// Which bound a contact has: its static torque, its kinetic one, or that for good.
-enum Box : int { at_rest, sliding, slips_on };
+/// How many rounds of boxes there are at most: a contact goes from one box to the other twice, and loads settle.
+inline constexpr int most_rounds = 4, most_loaded_rounds = 12;
 
 /// Which contacts are pressed in the middle of the step.
 inline void see_loads(Run& ws) {
@@ -37,6 +37,7 @@ inline void see_contact(Run& ws, int c) {
   if (!b.pressed || b.compliant) return;
   const double size = mode == locked || mode == open ? 0.0 : larger(mode * f.predicted[d], 0.0);
   if (f.bends[d] == settling) ws.piece[d] = b.piece = sliding_piece(ws, d, size);
+  if (ws.loads.of[c] >= 0) return;
   b.sign = forward;
   kinetic[1] = larger(-contact_torque(ws, b, size, ws.state, ws.observed.state_rates), 0.0);
   kinetic[0] = kinetic[1];
@@ -97,14 +98,17 @@ inline bool change_boxes(Run& ws, double h) {
 }
 
 /// Impulses of all contacts, for slips at the end without them in `gradient`. False: they were not found.
-inline bool find_impulses(Run& ws, double h) {
+inline bool find_impulses(Run& ws, double h, double tolerance) {
   Fixed<double>& f = ws.fixed;
-  const int nc = int(ws.sys.contacts);
+  const int nc = int(ws.sys.contacts), rounds = ws.sys.loads > 0 ? most_loaded_rounds : most_rounds;
   double largest = 0;
   for (int c = 0; c < nc; ++c) {
-    const int mode = ws.contact.mode[c];
-    f.box[c] = mode == locked || mode == open ? at_rest : sliding;
+    f.box[c] = ws.contact.mode[c] == locked || ws.contact.mode[c] == open ? at_rest : sliding;
     set_box(ws, c, h);
+  }
+  begin_loads(ws, h);
+  for (int c = 0; c < nc; ++c) {
+    const int mode = ws.contact.mode[c];
     // no guess is at a bound that is not there
     f.side[c] = mode == forward && f.lower[c] > -infinity ? -1 : mode == backward && f.upper[c] < infinity ? 1 : 0;
     const double most = larger(-f.lower[c], f.upper[c]);
@@ -116,14 +120,15 @@ inline bool find_impulses(Run& ws, double h) {
   }
   const Boxes boxes{nc,        f.mobility, f.gradient, f.lower,  f.upper,       f.weight,
                     f.impulse, f.end_slip, f.side,     f.solved, f.free_factor, f.list};
-  for (int round = 0; round < most_rounds; ++round) {
+  for (int round = 0; round < rounds; ++round) {
     for (int c = 0; c < nc; ++c) {
       if (!(f.lower[c] < f.upper[c])) f.side[c] = 1;
     }
     const int tried = solve(boxes);
     if (tried < 0) return false;
     ws.statistics.evaluations += tried;
-    if (!change_boxes(ws, h)) break;
+    const bool changed = change_boxes(ws, h);
+    if (!(ws.sys.loads > 0 && follow_loads(ws, boxes, h, tolerance)) && !changed) break;
   }
   return true;
 }
@@ -132,6 +137,8 @@ inline bool find_impulses(Run& ws, double h) {
 inline int mode_behind(const Run& ws, int c, double tolerance) {
   const Fixed<double>& f = ws.fixed;
   const int mode = ws.contact.mode[c];
+  // one that has no load stays closed until it is left
+  if (is_stop(ws, c)) return ws.contact.loaded[c] && free_way(ws, c) * f.end_slip[c] <= tolerance ? locked : open;
   if (ws.contact.compliant[c] && !contact_one_way(ws, c)) return mode;
   const double slip = f.end_slip[c];
   if (is_rigid(ws, c) || !ws.contact.loaded[c]) {

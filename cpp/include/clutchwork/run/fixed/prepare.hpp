@@ -6,12 +6,11 @@
 #include <clutchwork/components/pieces.hpp>
 #include <clutchwork/contacts/sticking.hpp>
 #include <clutchwork/motion/branches.hpp>
+#include <clutchwork/run/fixed/load_rows.hpp>
 #include <clutchwork/workspace.hpp>
 
 /// What fixed steps take, and their matrices.
 namespace clutchwork::fixed {
-
-using Run = Workspace<double>;
 
 inline bool has_varying_ratio(int kind) {
   return visit_torque(kind, [](auto tag) { return TransmissionElement<typename decltype(tag)::type>; });
@@ -45,9 +44,7 @@ inline Refusal refusal_of(const Run& ws, int d) {
     if (has_teeth(kind)) return Refusal::bristles;
     return has_varying_ratio(kind) ? Refusal::varying_ratio : Refusal::taken;
   }
-  const int c = d - int(sys.elements), law = sys.contact_law[c];
-  if (sys.contact_place[c] >= 0) return Refusal::stop;
-  if (is_loaded(sys.contact_kind[c])) return Refusal::load_dependent;
+  const int law = sys.contact_law[d - sys.elements];
   if (is_too_fast(law)) return Refusal::bristles;
   return is_chattering_law(law) ? Refusal::chatters : Refusal::taken;
 }
@@ -90,6 +87,7 @@ inline void pack_all(Run& ws) {
     const int kind = ws.sys.contact_kind[c];
     f.two_sided[c] = is_shaped(kind) || is_limited(kind);
   }
+  weigh_loads(ws);
   f.ready = true;
 }
 
@@ -123,6 +121,7 @@ inline bool factor_step(Run& ws, double h) {
   for (int c = 0; c < nc; ++c) {
     for (int o = 0; o < nc; ++o) f.mobility[c * nc + o] = rate_row(sys, ne + c).times(f.answer + o * nv);
   }
+  reach_loads(ws, h);
   f.length = h;
   ++ws.statistics.jacobians;
   return true;

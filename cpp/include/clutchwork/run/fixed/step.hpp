@@ -11,9 +11,9 @@
 /// One fixed step: docs/theory/fixed-steps.md
 namespace clutchwork::fixed {
 
-/// Speeds, states and rates that are expected in the middle of the step, from the last one. docs/theory/fixed-steps.md
-/// (3)
-inline void predict(Run& ws, double h) {
+/// Speeds, states and rates that are expected in the middle of the step, from the last one; what round-off makes of a
+/// shaft at rest is no rate. docs/theory/fixed-steps.md (3)
+inline void predict(Run& ws, double h, double tolerance) {
   const System& sys = ws.sys;
   Fixed<double>& f = ws.fixed;
   const double share = f.time == ws.time && f.before > 0 ? 0.5 * h / f.before : 0;
@@ -26,6 +26,7 @@ inline void predict(Run& ws, double h) {
       f.predicted[d] += prescribed_share(ws, d, p) * ws.in.prescribed[p];
       f.start_rate[d] += prescribed_share(ws, d, p) * f.given[p];
     }
+    if (abs(f.predicted[d]) <= tolerance) f.predicted[d] = 0;
   }
 }
 
@@ -126,7 +127,7 @@ inline void move(Run& ws, double h) {
 inline bool hold_rigid(Run& ws, double h, double tolerance) {
   Fixed<double>& f = ws.fixed;
   for (int c = 0; c < ws.sys.contacts; ++c) {
-    if (!is_rigid(ws, c) || !ws.contact.loaded[c]) continue;
+    if (!is_rigid(ws, c) || !ws.contact.loaded[c] || ws.loads.of[c] >= 0) continue;
     const double slip = f.end_slip[c];
     if (free_way(ws, c) * slip < -1e3 * tolerance) return ws.detail.component = int(ws.sys.elements) + c, false;
     if (abs(slip) > tolerance && free_way(ws, c) * slip <= 0)
@@ -164,7 +165,7 @@ inline Status make_step(Run& ws, const double t, const double h, const double en
   Fixed<double>& f = ws.fixed;
   const double tolerance = slip_tolerance(ws);
   read_signals(ws, t + 0.5 * h);
-  predict(ws, h);
+  predict(ws, h, tolerance);
   see_middle(ws);
   if (ws.guard.n_faulty > 0) see_faults(ws);
   if (ws.contact.failed >= 0) return ws.detail.component = int(ws.sys.elements) + ws.contact.failed, Status::fault;
@@ -173,9 +174,11 @@ inline Status make_step(Run& ws, const double t, const double h, const double en
   for (int c = 0; c < ws.sys.contacts; ++c) see_contact(ws, c);
   follow_prescribed(ws, end);
   move_freely(ws, h);
-  if (!find_impulses(ws, h)) return Status::no_mode;
+  if (ws.sys.loads > 0) see_free_loads(ws, h);
+  if (!find_impulses(ws, h, tolerance)) return Status::no_mode;
   if (!hold_rigid(ws, h, tolerance)) return Status::jammed;
   if (gives_way(ws, tolerance)) return make_step(ws, t, h, end);
+  for (int l = 0; l < ws.sys.loads; ++l) ws.loads.now[l] = load_impulse(ws, l) / h;
   move(ws, h);
   if (!are_known(ws)) return Status::out_of_table;
   for (int c = 0; c < ws.sys.contacts; ++c) f.mode[c] = mode_behind(ws, c, tolerance);
@@ -225,6 +228,7 @@ inline void report(Run& ws, const Look& look, double end) {
   for (int k = 0; k < n; ++k) {
     const int c = f.list[k], from = ws.contact.mode[c], to = f.mode[c];
     ws.contact.mode[c] = to;
+    if (is_stop(ws, c)) ws.contact.side[c] = 0;
     // what was open and slips now without a load tells nothing
     if (from == open && to != locked) continue;
     ws.time = f.instant[c];

@@ -20,6 +20,11 @@ struct LineFlip {
   static bool watches(const Workspace<T>& ws) {
     return ws.loads.n_sliding > 0;
   }
+  /// Call f for each load of a contact that slips.
+  template <class T, class F>
+  static void each_border(const Workspace<T>& ws, F&& f) {
+    for (int i = 0; i < ws.loads.n_sliding; ++i) f(ws.loads.sliding[i]);
+  }
   template <class Form>
   [[gnu::noinline]] static void find(Form& form, Step<Form>& step, Hit& hit) {
     using T = typename Form::Scalar;
@@ -58,9 +63,10 @@ struct LineFlip {
   static void settle(Phase& phase, const Hit& hit) {
     auto& ws = phase.ws();
     const int c = ws.sys.load_contact[hit.index];
-    if (events_crowd(ws, component(ws, hit))) return phase.leave(crowded(ws));
     ws.loads.line[hit.index] = 1 - ws.loads.line[hit.index];
+    // nothing jumps there, however often: a torque that has died away is round-off
     if (phase.is_balanced()) return phase.go_on_as_before();
+    if (events_crowd(ws, component(ws, hit))) return phase.leave(crowded(ws));
     ws.loads.jammed = c;
     phase.decide(Cause::jam, c);
   }

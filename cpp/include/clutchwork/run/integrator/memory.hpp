@@ -64,9 +64,9 @@ CLUTCHWORK_HOT void fit(Form& form, Step<Form>& step) {
 }
 
 /// The state at t + s h into `out`.
-template <class Form, class T = typename Form::Scalar>
-CLUTCHWORK_HOT void interpolate(Form& form, Step<Form>& step, double s, T* out) {
-  const Real<T> x = Real<T>(s), r = Real<T>(1 - s);
+template <class Form, class Share, class T = typename Form::Scalar>
+CLUTCHWORK_HOT void interpolate(Form& form, Step<Form>& step, const Share& s, T* out) {
+  const Real<T> x = Real<T>(s), r = Real<T>(Share(1) - s);
   const int n = form.n();
   const T *a = step.y0(), *b = step.y1(), *p0 = step.p(0), *p1 = step.p(1), *p2 = step.p(2);
   for (int i = 0; i < n; ++i) out[i] = r * a[i] + x * (b[i] + r * (p0[i] + x * (p1[i] + x * p2[i])));

@@ -1,4 +1,4 @@
-"""What a file of measurements holds, before a column of it is used."""
+"""Content of a file of measurements, before a column of it is used."""
 
 from __future__ import annotations
 
@@ -33,7 +33,7 @@ class FileColumn:
 
 
 class FileColumns(Sequence[FileColumn]):
-    """What a file holds, in its order; print it to read it."""
+    """Content of a file, in its order; print it to see it."""
 
     def __init__(self, found: Sequence[FileColumn]) -> None:
         self._found = tuple(found)

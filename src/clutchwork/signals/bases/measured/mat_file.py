@@ -23,7 +23,7 @@ DEEPEST = 12
 
 @dataclass(frozen=True)
 class Leaf:
-    """A vector: its name, its fellows in the same structure, and the structures around that."""
+    """A vector: its name, its siblings in the same structure, and the enclosing structures."""
 
     path: tuple[str, ...]
     values: Array
@@ -105,7 +105,7 @@ def _aliases(leaf: Leaf) -> Iterator[str]:
 
 
 def _unit(leaf: Leaf) -> str:
-    """What stands beside it: a table of units, or for a structure of one signal its unit."""
+    """Its siblings: a table of units, or for a structure of one signal its unit."""
     last = leaf.path[-1]
     for tree in leaf.around[:1]:
         for key in UNITS:

@@ -29,7 +29,7 @@ def opened(path: Path) -> Iterator[list[Series]]:
 
 
 def _made(asammdf: Any, stream: BinaryIO) -> Any:
-    """The file; ValueError where it is damaged, and what was made of it is gone without a word."""
+    """The file; ValueError if it is damaged; partial objects are discarded silently."""
     told = sys.unraisablehook
     sys.unraisablehook = _say_nothing
     try:
@@ -42,7 +42,7 @@ def _made(asammdf: Any, stream: BinaryIO) -> Any:
 
 
 def _say_nothing(_: object) -> None:
-    """The end of an object that was not completed is of no interest."""
+    """Errors while an incomplete object is destroyed are ignored."""
 
 
 def _labels(file: Any) -> list[str]:

@@ -37,7 +37,7 @@ OTHERS = {
 
 
 def own_unit(text: str) -> str:
-    """A unit of another program; what is not known stays as it is."""
+    """A unit of another program; an unknown one stays unchanged."""
     bare = text.strip().replace("\N{MICRO SIGN}", "u")
     if len(bare) > 1 and bare[0] + bare[-1] == "[]":
         bare = bare[1:-1].strip()

@@ -45,7 +45,7 @@ def read(where: str, wanted: ColumnRequest) -> ColumnValues:
 
 
 def pick(found: list[Series], wanted: ColumnRequest) -> Series:
-    """The series that is meant."""
+    """The series that a name refers to."""
     groups = list(dict.fromkeys(one.group for one in found if one.group))
     if wanted.group and wanted.group not in groups:
         raise wanted.error(

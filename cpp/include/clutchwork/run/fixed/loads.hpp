@@ -1,0 +1,160 @@
+#pragma once
+#include <clutchwork/components/dense.hpp>
+#include <clutchwork/contacts/sticking.hpp>
+#include <clutchwork/run/fixed/boxes.hpp>
+#include <clutchwork/run/fixed/torques.hpp>
+
+/// Contacts that follow loads, over one step: docs/theory/fixed-steps.md (12)
+namespace clutchwork::fixed {
+
+/// Which bound a contact has: its static torque, its kinetic one, that for good; none, where a gear jams.
+enum Box : int { at_rest, sliding, slips_on, stops };
+
+/// The impulses of loads without those of contacts, where the change of the speeds without them is known.
+inline void see_free_loads(Run& ws, double h) {
+  const System& sys = ws.sys;
+  Fixed<double>& f = ws.fixed;
+  const int nv = int(sys.speeds), np = int(sys.prescribed);
+  for (int l = 0; l < sys.loads; ++l) {
+    double sum = dot(nv, f.load_by_speed + l * nv, f.change) + dot(np, f.load_by_given + l * np, f.given_change);
+    for (int d = 0; d < ws.n_directions; ++d) {
+      const double rate = load_rate(sys, l, d);
+      if (rate == 0 || !is_smooth(ws, d)) continue;
+      const double middle = f.start_rate[d] + 0.5 * (f.rate_change[d] + rate_row(sys, d).times(f.change));
+      sum -= h * rate * (f.force[d] + f.kept[d] * middle);
+    }
+    f.load_free[l] = sum;
+  }
+}
+
+/// Impulse of load l.
+inline double load_impulse(const Run& ws, int l) {
+  const int nc = int(ws.sys.contacts);
+  return ws.fixed.load_free[l] + dot(nc, ws.fixed.load_reach + l * nc, ws.fixed.impulse);
+}
+
+/// What contact c can hold against slip in a direction, over its load.
+inline Bound<double> bound_at(const Run& ws, int c, int direction) {
+  const int d = int(ws.sys.elements) + c, mode = ws.contact.mode[c];
+  const double size = mode == locked || mode == open ? 0.0 : larger(mode * ws.fixed.predicted[d], 0.0);
+  return bound_of(ws, c, direction, size, ws.branch[d].piece);
+}
+
+/// The impulse that contact c can give against slip, where its load has the impulse `load`.
+inline double most_impulse(const Run& ws, int c, int direction, double load, double h) {
+  return larger(h * bound_at(ws, c, direction).at(load / h), 0.0);
+}
+
+/// The bounds of a contact; one between prescribed shafts has its impulse whatever they are.
+inline void set_bounds(Run& ws, int c, double ahead, double behind, double h) {
+  Fixed<double>& f = ws.fixed;
+  if (!is_rigid(ws, c)) f.lower[c] = -ahead, f.upper[c] = behind;
+  f.kinetic[2 * c + 1] = f.limit[2 * c + 1] = ahead / h;
+  f.kinetic[2 * c] = f.limit[2 * c] = behind / h;
+}
+
+/// What the contacts that slip can give with the loads of their last torques; those at rest have no bounds yet.
+inline void begin_loads(Run& ws, double h) {
+  Fixed<double>& f = ws.fixed;
+  const int ne = int(ws.sys.elements), nc = int(ws.sys.contacts);
+  for (int c = 0; ws.sys.loads > 0 && c < nc; ++c) f.impulse[c] = h * f.torque[ne + c];
+  for (int l = 0; l < ws.sys.loads; ++l) {
+    const int c = int(ws.sys.load_contact[l]), mode = ws.contact.mode[c];
+    const double load = load_impulse(ws, l);
+    if (mode == locked || mode == open) {
+      set_bounds(ws, c, infinity, infinity, h);
+    } else {
+      set_bounds(ws, c, most_impulse(ws, c, forward, load, h), most_impulse(ws, c, backward, load, h), h);
+    }
+  }
+}
+
+/// The bound at which a contact is, -1 below, 1 above; 0: none. What prescribed speeds drive is at one that resists.
+inline int bound_side(const Run& ws, int c, double tolerance) {
+  if (!is_rigid(ws, c)) return ws.fixed.side[c];
+  const double slip = ws.fixed.end_slip[c];
+  return abs(slip) <= tolerance ? 0 : slip > 0 ? -1 : 1;
+}
+
+/// How the free contacts and with them load l answer to a unit impulse of contact `from`.
+inline double answered(const Run& ws, const Boxes& p, int l, int from, int m) {
+  const double* reach = ws.fixed.load_reach + l * p.n;
+  double sum = reach[from];
+  for (int a = 0; a < m; ++a) sum += reach[p.list[a]] * p.solved[a];
+  return sum;
+}
+
+/// Gears whose friction would grow with what it drives stop for this step: the determinant of those that slip is not
+/// positive. docs/theory/load-dependent.md, rule 4
+inline bool jam_loads(Run& ws, int n, bool factored, double h) {
+  Fixed<double>& f = ws.fixed;
+  bool positive = factored;
+  for (int a = 0; factored && a < n; ++a)
+    positive = positive == ((f.load_matrix[a * n + a] > 0) == (f.load_pivot[a] == a));
+  for (int a = 0; !positive && a < n; ++a) {
+    const int c = int(ws.sys.load_contact[f.follower[a]]);
+    f.box[c] = stops;
+    set_bounds(ws, c, infinity, infinity, h);
+  }
+  return !positive;
+}
+
+/// Contacts of loads that are at a bound, and what their impulses are off; all bounds at the loads of the solution.
+/// Whether it is another one with these.
+inline bool see_bounds(Run& ws, double h, double tolerance, int& n) {
+  Fixed<double>& f = ws.fixed;
+  bool moves = false;
+  for (int l = 0; l < ws.sys.loads; ++l) {
+    const int c = int(ws.sys.load_contact[l]), side = bound_side(ws, c, tolerance);
+    if (f.box[c] == stops) continue;
+    const double load = load_impulse(ws, l), x = f.impulse[c];
+    const double ahead = most_impulse(ws, c, forward, load, h), behind = most_impulse(ws, c, backward, load, h);
+    set_bounds(ws, c, ahead, behind, h);
+    const double wanted = side == 0 ? larger(smaller(x, behind), -ahead) : side < 0 ? -ahead : behind;
+    moves = moves || abs(wanted - x) > (side == 0 ? 1e-12 : 1e-13) * (abs(x) + abs(load));
+    if (side != 0) f.follower[n] = l, f.load_off[n++] = wanted - x;
+  }
+  return moves;
+}
+
+/// The system of the n contacts at a bound: what their impulses change of what each is off.
+inline void couple_bounds(Run& ws, const Boxes& p, double h, double tolerance, int n) {
+  Fixed<double>& f = ws.fixed;
+  int m = 0;
+  for (int c = 0; c < p.n; ++c) m += f.side[c] == 0;
+  for (int b = 0; b < n; ++b) {
+    const int from = int(ws.sys.load_contact[f.follower[b]]);
+    for (int a = 0; a < m; ++a) p.solved[a] = p.mobility[p.list[a] * p.n + from];
+    solve_free(p, m);
+    for (int a = 0; a < n; ++a) {
+      const int l = f.follower[a], c = int(ws.sys.load_contact[l]), side = bound_side(ws, c, tolerance);
+      const Bound<double> bound = bound_at(ws, c, -side);
+      const double slope = side * bound.slope[bound.line_at(load_impulse(ws, l) / h)];
+      f.load_matrix[a * n + b] = (a == b ? 1.0 : 0.0) - slope * answered(ws, p, l, from, m);
+    }
+  }
+}
+
+/// The bounds of contacts that follow loads at the loads of the solution: exactly where these are at a bound, as long
+/// as no contact goes to another one. Whether the solution is another one with them. docs/theory/fixed-steps.md, rule 6
+inline bool follow_loads(Run& ws, const Boxes& p, double h, double tolerance) {
+  Fixed<double>& f = ws.fixed;
+  int n = 0;
+  if (!see_bounds(ws, h, tolerance, n)) return false;
+  if (n == 0) return true;
+  couple_bounds(ws, p, h, tolerance, n);
+  if (jam_loads(ws, n, factor_lu(n, f.load_matrix, f.load_pivot), h)) return true;
+  solve_lu(n, f.load_matrix, f.load_pivot, f.load_off);
+  for (int a = 0; a < n; ++a) {
+    const int c = int(ws.sys.load_contact[f.follower[a]]), side = bound_side(ws, c, tolerance);
+    const double size = larger(side * (f.impulse[c] + f.load_off[a]), 0.0);
+    if (is_rigid(ws, c)) f.lower[c] = f.upper[c] = side * size;
+    if (side < 0)
+      f.lower[c] = -size, f.kinetic[2 * c + 1] = f.limit[2 * c + 1] = size / h;
+    else
+      f.upper[c] = size, f.kinetic[2 * c] = f.limit[2 * c] = size / h;
+  }
+  return true;
+}
+
+}  // namespace clutchwork::fixed

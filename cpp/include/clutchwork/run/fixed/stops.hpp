@@ -1,0 +1,87 @@
+#pragma once
+#include <clutchwork/contacts/stops.hpp>
+#include <clutchwork/run/event.hpp>
+#include <clutchwork/run/fixed/prepare.hpp>
+#include <clutchwork/run/switch.hpp>
+
+/// Stops that are met within a step, and the impacts there: docs/theory/fixed-steps.md, rule 7
+namespace clutchwork::fixed {
+
+/// So many impacts of one step bounce; as many more as there are contacts do not, and the rest waits for its end.
+inline constexpr int most_bounces = 3;
+
+/// Where in a step a stop meets an end.
+struct Meeting {
+  int contact = -1, side = 0;
+  double share = 1;
+};
+
+/// Share of a step at which a distance `far` that closes by `speed`, which itself gains `gain`, is gone; 2: it is not.
+inline double closing_share(double far, double speed, double gain) {
+  const double square = speed * speed + 2 * far * gain;
+  if (!(square >= 0)) return 2;
+  if (speed > 0) return 2 * far / (speed + sqrt(square));
+  return gain > 0 ? (sqrt(square) - speed) / gain : 2;
+}
+
+/// The first meeting in a step of the length h.
+inline Meeting first_meeting(const Run& ws, double h) {
+  const Fixed<double>& f = ws.fixed;
+  Meeting first;
+  for (int c = 0; c < ws.sys.contacts; ++c) {
+    if (!is_stop(ws, c) || ws.contact.side[c] != 0) continue;
+    const int d = int(ws.sys.elements) + c;
+    for (int side = -1; side <= 1; side += 2) {
+      const double far = side * (stop_end(ws, c, side) - ws.state[place_of(ws, c)]);
+      if (!(far < infinity)) continue;
+      // one that has just left an end leaves it
+      const double left = far <= stop_noise(ws, c) ? 0 : far;
+      const double share = closing_share(left, h * side * f.start_rate[d], h * side * f.rate_change[d]);
+      if (share < first.share || (share == 1 && first.contact < 0)) first = {c, side, share};
+    }
+  }
+  return first;
+}
+
+/// Modes behind impacts, and their events.
+inline void report_impacts(Run& ws, double before) {
+  const int ne = int(ws.sys.elements);
+  const double after = kinetic_energy(ws), tolerance = slip_tolerance(ws);
+  for (int c = 0; c < ws.sys.contacts; ++c) {
+    const int from = ws.contact.mode[c];
+    const double slip = rate_of(ws, ne + c);
+    int& mode = ws.contact.mode[c];
+    if (is_stop(ws, c)) {
+      mode = ws.contact.side[c] != 0 ? locked : open;
+    } else if (ws.contact.loaded[c] && abs(slip) > tolerance) {
+      mode = slip > 0 ? forward : backward;
+    }
+    const bool struck = ws.contact.struck[c] != 0;
+    if (!struck && mode == from) continue;
+    record(ws,
+           {c, from, mode, struck ? Cause::impact : Cause::other_event, 0, ws.fixed.torque[ne + c], 0, before, after});
+  }
+}
+
+/// The impacts at the present instant, which is a meeting. `running`: the run goes on, without a history.
+inline Status strike(Run& ws, const Meeting& met) {
+  Fixed<double>& f = ws.fixed;
+  const double tolerance = slip_tolerance(ws);
+  inputs_at(ws, ws.time);
+  ws.detail.component = int(ws.sys.elements) + met.contact;
+  if (is_rigid(ws, met.contact)) return Status::jammed;
+  ws.state[place_of(ws, met.contact)] = stop_end(ws, met.contact, met.side);
+  for (int c = 0; c < ws.sys.contacts; ++c) ws.contact.struck[c] = 0;
+  const double before = kinetic_energy(ws);
+  int n = 0;
+  const bool ends = ++f.impacts > most_bounces;
+  if (ends) list_struck(ws, true, tolerance, ws.decision.list, n);
+  if (ends ? !impact(ws, n, true, tolerance) : !collide(ws)) return Status::no_mode;
+  if (ends) ws.contact.struck[met.contact] = 1;
+  close_stops(ws);
+  report_impacts(ws, before);
+  f.before = 0;
+  return Status::running;
+}
+
+}  // namespace clutchwork::fixed
