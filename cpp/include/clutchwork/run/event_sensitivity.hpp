@@ -149,9 +149,9 @@ void note_borders_of(Form& form, Step<Form>& step, int place) {
   const double last_time = ws.moved.last_time;
   // a load may be turned by where a signal goes from here
   const double far = ws.in.next_knot < infinity ? 0.37 * (ws.in.next_knot - ws.time) : 1e-3 * (1 + abs(ws.time));
-  const double ahead = std::is_same_v<G, LineFlip> ? far : 0.0;
+  const double looks[] = {0.0, std::is_same_v<G, LineFlip> ? far : 0.0};
   G::each_border(ws, [&](int index) {
-    for (const double later : {0.0, ahead}) {
+    for (const double later : looks) {
       Hit hit;
       hit.what = place, hit.index = index, ws.in.time = -infinity;
       const T margin = G::at(form, step, hit, ws.time + later, step.y0(), hit.who);
@@ -159,7 +159,7 @@ void note_borders_of(Form& form, Step<Form>& step, int place) {
       // as one that is met together with what does not move
       ws.moved.last = T(0), ws.moved.last_time = ws.time;
       note_graze(ws, place, G::component(ws, hit), infinity, margin);
-      if (ahead == 0) return;
+      if (looks[1] == 0) return;
     }
   });
   ws.moved.last = last, ws.moved.last_time = last_time;

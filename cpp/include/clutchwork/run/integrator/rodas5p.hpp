@@ -149,7 +149,7 @@ struct Rodas5P {
         own[br.state] = own[br.state] * inverse[0];
         push = own[br.state] * ws.jacobian.f_state[br.state];
       } else {
-        X found[larger(most_own_states, 1)];
+        X found[most_own_states > 0 ? most_own_states : 1];
         for (int i = 0; i < br.states; ++i) found[i] = dot(br.states, inverse + i * br.states, own + br.state);
         for (int i = 0; i < br.states; ++i) own[br.state + i] = found[i];
         push = dot(br.states, ws.jacobian.f_state + br.state, found);
