@@ -4,7 +4,7 @@
 /// Flow of oil through openings: docs/theory/hydraulics.md.
 namespace clutchwork {
 
-inline constexpr double bar = 1e5;          ///< [Pa] one unit of a pressure among the states of hydraulic elements
+inline constexpr double bar = 1e5;         ///< [Pa] one unit of a pressure among the states of hydraulic elements
 inline constexpr double ambient = 101325;  ///< [Pa] what pressures are above
 
 /// Oil as it flows: [kg/m3], [m2/s].

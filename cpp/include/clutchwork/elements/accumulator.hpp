@@ -51,7 +51,7 @@ struct Accumulator : declared::Accumulator {
     return who;
   }
 
-  static constexpr double air = 0.005;       ///< share of the oil
+  static constexpr double air = 0.005;  ///< share of the oil
 };
 
 }  // namespace clutchwork::elements
