@@ -152,6 +152,26 @@ def test_what_is_given_by_mistake_is_named() -> None:
         "throttle is \\[0.3\\]: give a number from 0 to 1": lambda: drive(
             sim, control, 0.2, throttle=[0.3], sensed=sensed
         ),
+        "throttle is 30: give a number from 0 to 1, down to -1": lambda: drive(
+            sim, control, 0.2, throttle=30, sensed=sensed
+        ),
+        "throttle is nan": lambda: drive(sim, control, 0.2, throttle=float("nan"), sensed=sensed),
+        "throttle returned None at 0.1 s: give a number": lambda: drive(
+            sim, control, 0.2, throttle=lambda _: None, sensed=sensed
+        ),
+        "throttle returned 1.5 at 0.1 s": lambda: drive(sim, control, 0.2, throttle=lambda _: 1.5, sensed=sensed),
+        "until is nan s": lambda: drive(sim, control, float("nan"), throttle=0.3, sensed=sensed),
+        "until is -1 s, and it is 0.1 s": lambda: drive(sim, control, -1.0, throttle=0.3, sensed=sensed),
+        "until is '1 s'": lambda: drive(sim, control, "1 s", throttle=0.3, sensed=sensed),
+        "period is 0.0: give a time above 0 s": lambda: drive(
+            sim, control, 0.2, throttle=0.3, sensed=sensed, period=0.0
+        ),
+        "period is '10 ms'": lambda: drive(sim, control, 0.2, throttle=0.3, sensed=sensed, period="10 ms"),
+        "resting is nan": lambda: drive(sim, control, 0.2, throttle=0.3, sensed=sensed, resting=float("nan")),
+        "also is {}: give a function": lambda: drive(sim, control, 0.2, throttle=0.3, sensed=sensed, also={}),
+        "what also returned is None: give a function": lambda: drive(
+            sim, control, 0.2, throttle=0.3, sensed=sensed, also=lambda time, sim: None
+        ),
         "throttle is missing": lambda: drive(sim, control, 0.2, sensed=sensed),
         "sim is <Driveline": lambda: drive(model, control, 0.2, throttle=0.3),
     }

@@ -31,6 +31,8 @@ SYNCHRONISE = 10.0
 # output speed below which no ratio is looked at, and machines brake less [rad/s]
 # and share of the ratio between two modes that is hysteresis
 SLOW, HYSTERESIS = 5.0, 0.05
+# of the charge, that is left for starting an engine which stands
+RESERVE = 0.05
 CALL = "cw.shifts.HybridController"
 
 
@@ -40,9 +42,9 @@ class HybridSettings:
 
     Parameters: output_torque, of the output at full pedal over its speed, points (rad/s, N m); engine_speed, of the
     engine over its power, points (W, rad/s); charge, of the battery that is aimed at; charge_power [W], for all that it
-    lacks; electric [W], power below which the engine stands, 0: it never does; limits, of the power that the battery
-    takes and gives at a charge [W], such as `battery.limits`; follow [1/s], at which the engine comes to its speed;
-    shift, settings of the elements.
+    lacks; electric [W], power below which the engine stands while the battery has what drives, 0: it never does;
+    limits, of the power that the battery takes and gives at a charge [W], such as `battery.limits`; follow [1/s], at
+    which the engine comes to its speed; shift, settings of the elements.
     """
 
     output_torque: Line
@@ -146,14 +148,12 @@ class HybridController:
         with_, speeds = self.settings, (now.input_speed, now.output_speed)
         sense = -1.0 if self.direction == REVERSE else 1.0
         wanted = now.throttle * at(with_.output_torque, abs(speeds[1]))
-        if wanted < 0.0:
-            # machines brake to rest, and not beyond
-            wanted *= min(1.0, max(0.0, sense * speeds[1] / SLOW))
-        wanted *= sense
+        # machines brake to rest, and not beyond, whichever way it rolls
+        wanted *= sense if wanted >= 0.0 else min(1.0, max(-1.0, speeds[1] / SLOW))
         low, high = with_.limits(charge)
         given = min(max((charge - with_.charge) * with_.charge_power, low), high)
         power = max(0.0, wanted * speeds[1] - given)
-        self.stands = power < (1.0 + HYSTERESIS * self.stands) * with_.electric
+        self.stands = self._may_stand(power, max(0.0, wanted * speeds[1]), charge)
         target = 0.0 if self.stands else at(with_.engine_speed, power)
         if with_.electric:
             # it is turned softly
@@ -172,6 +172,14 @@ class HybridController:
         self._shift(time, now)
         made = self._do.outputs(period) | {self.engine.signal: self.engine.command(torque, speeds[0])}
         return made | {self.machines[name].signal: value for name, value in machines.items()}
+
+    def _may_stand(self, power: float, driving: float, charge: float) -> bool:
+        """Whether little power is wanted of the engine, and the battery has what drives [W] without it."""
+        with_, stands = self.settings, self.stands
+        # an engine that runs comes to rest where there is more to spare
+        _, spare = with_.limits(max(0.0, charge - (1.0 if stands else 2.0) * RESERVE))
+        enough = driving < (1.0 - HYSTERESIS * (not stands)) * spare
+        return enough and power < (1.0 + HYSTERESIS * stands) * with_.electric
 
     def _torques(
         self, time: float, target: float, given: tuple[float, float], speeds: tuple[float, float], charge: float
