@@ -216,10 +216,49 @@ def test_what_is_wrong_is_said() -> None:
     d, engine, _ = hybrid(box, "EVT1")
     plant = cw.shifts.plant_of(d.assemble(), box)
     more = {"engine": EngineSource.of(engine), "settings": HybridSettings([(0.0, 900.0)], SPEEDS)}
+    both = {name: TorqueSource(f"{name}.command", -1.0, 1.0) for name in box.machines}
+    good = {"box": box, "plant": plant, "machines": both, **more}
+    wrong = {
+        "box": ("x", "box is 'x': give a cw.Gearbox"),
+        "plant": (d, "plant is <Driveline"),
+        "engine": (cw.Engine, "engine is .*Engine.*: give cw.shifts.EngineSource.of"),
+        "settings": (None, "settings is None: give cw.shifts.HybridSettings"),
+        "machines": (both | {"MGB": "MGB"}, "machine 'MGB' is 'MGB': give a cw.shifts.TorqueSource"),
+    }
+    for name, (value, words) in wrong.items():
+        with pytest.raises(cw.UseError, match=words):
+            HybridController(**good | {name: value})
+    with pytest.raises(cw.UseError, match="machines is None"):
+        HybridController(**good | {"machines": None})
+    with pytest.raises(cw.UseError, match=r"cw.shifts.HybridController\(\): 4 problems\n *plant is missing"):
+        HybridController(box)
     with pytest.raises(cw.UseError, match="give sources for MGB"):
         HybridController(box, plant, machines={"MGA": TorqueSource("MGA.command", -1.0, 1.0)}, **more)
-    both = {name: TorqueSource(f"{name}.command", -1.0, 1.0) for name in box.machines}
     with pytest.raises(cw.UseError, match="'2' is not a split"):
         HybridController(box, plant, machines=both, mode="2", **more)
     with pytest.raises(cw.UseError, match="'P' is not a direction: request 'D' or 'R'"):
         HybridController(box, plant, machines=both, **more).request("P")
+
+
+@pytest.mark.parametrize(
+    ("name", "values", "bound"),
+    [
+        ("electric", ("12 kW", None, -1.0, float("nan"), inf), "give a power in W, 0 or above"),
+        ("charge_power", ("50 kW", -1.0, inf), "give a power in W, 0 or above"),
+        ("charge", (60, -0.1, None), "give a number from 0 to 1"),
+        ("follow", (0.0, -4.0, "4"), "give a rate in 1/s, above 0"),
+        ("limits", ((-1e4, 1e4), None), "give a function of the charge"),
+        ("shift", (None,), "give cw.shifts.ShiftSettings"),
+        ("output_torque", (900.0, [], [(0.0, "x")], [(1.0, 2.0), (0.0, 1.0)], [(0.0, inf)]), "give points of two"),
+        ("engine_speed", (None, [(0.0, 110.0), (0.0, 120.0)]), "give points of two"),
+    ],
+)
+def test_settings_have_bounds(name: str, values: tuple[object, ...], bound: str) -> None:
+    for value in values:
+        with pytest.raises(cw.UseError, match=rf"cw.shifts.HybridSettings: 1 problem\n  {name} is .*: {bound}"):
+            HybridSettings(**{"output_torque": [(0.0, 900.0)], "engine_speed": SPEEDS, name: value})
+    # all at once
+    with pytest.raises(cw.UseError, match="3 problems"):
+        HybridSettings([], SPEEDS, charge=2.0, electric=-1.0)
+    with pytest.raises(cw.UseError, match=r"cw.shifts.HybridSettings\(\): 1 problem\n  engine_speed is missing"):
+        HybridSettings([(0.0, 900.0)])

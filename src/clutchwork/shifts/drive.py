@@ -106,8 +106,7 @@ def _check_times(begin: float, until: float, steps: Mapping[str, float]) -> None
 
 def _is_pedal(value: object) -> bool:
     # np.where makes arrays of one number
-    single = isinstance(value, SupportsFloat) and not getattr(value, "ndim", 0)
-    return single and -1.0 <= float(value) <= 1.0
+    return isinstance(value, SupportsFloat) and not getattr(value, "ndim", 0) and -1.0 <= float(value) <= 1.0
 
 
 def _given(throttle: Callable[[float], float] | float, time: float) -> float:
