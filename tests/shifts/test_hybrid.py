@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
+from dataclasses import replace
 from math import inf
 
 import numpy as np
@@ -197,11 +199,13 @@ def test_the_engine_stands_where_little_is_wanted() -> None:
     assert np.max(felt[quiet]) < 10.0
 
 
-def test_an_empty_battery_starts_the_engine() -> None:
+@pytest.mark.parametrize("limits", [{}, {"limits": lambda _: (-inf, inf)}], ids=["known", "unknown"])
+def test_an_empty_battery_starts_the_engine(limits: dict[str, Callable[[float], tuple[float, float]]]) -> None:
     """However much is to be driven without it, the engine starts before the battery is empty, and charges it."""
     box = cw.Gearbox.load("toyota-p410")
     d, engine, store = hybrid(box, "split", 0.02, max_current=150.0)
     sim, control = controlled(box, d, engine, store, 1800.0, electric=60e3)
+    control.settings = replace(control.settings, **limits)
     run = drive(sim, control, 30.0, throttle=0.5, sensed=CHARGE)
     assert run["crank.speed"][-1] > 110.0
     assert run["battery.charge"][-1] > 0.02

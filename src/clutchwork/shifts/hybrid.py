@@ -222,7 +222,8 @@ class HybridController:
         """Whether little power is wanted of the engine, and the battery has what drives [W] without it."""
         with_, stands = self.settings, self.stands
         # an engine that runs comes to rest where there is more to spare
-        _, spare = with_.limits(max(0.0, charge - (1.0 if stands else 2.0) * RESERVE))
+        left = charge - (1.0 if stands else 2.0) * RESERVE
+        spare = with_.limits(left)[1] if left > 0.0 else 0.0
         enough = driving < (1.0 - HYSTERESIS * (not stands)) * spare
         return enough and power < (1.0 + HYSTERESIS * stands) * with_.electric
 
