@@ -282,7 +282,9 @@ def test_what_an_impact_breaks_loose_is_an_event() -> None:
     law = cw.Coulomb(static=0.2, kinetic=0.1)
     d.add(cw.Clutch("c", base=a, follower=b, friction=law, gain=1.0, normal_force=10.0, locked=True))
     d.add(cw.EndStop("stop", follower=a, upper=0.0105, upper_restitution=0.5))
-    told = [[(e.element, e.before, e.after, e.cause) for e in d.simulate(0.05, **how).events] for how in ({}, fixed(1e-3))]
+    told = [
+        [(e.element, e.before, e.after, e.cause) for e in d.simulate(0.05, **how).events] for how in ({}, fixed(1e-3))
+    ]
     assert ("c", "locked", "forward", "other event") in told[0]
     assert ("c", "locked", "forward", "other event") in told[1]
 
