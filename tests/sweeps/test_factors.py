@@ -83,7 +83,9 @@ def test_factors_on_what_is_no_number(vary: Any, told: str):
     assert told in str(error.value)
 
 
-@pytest.mark.parametrize("wrong", [("2 Pa",), (True,), (float("nan"),), ([],), (0.9, "1"), (None,), ({"a": "0.9"},), ({},)])
+@pytest.mark.parametrize(
+    "wrong", [("2 Pa",), (True,), (float("nan"),), ([],), (0.9, "1"), (None,), ({"a": "0.9"},), ({},)]
+)
 def test_what_is_no_factor(wrong: Any):
     with pytest.raises(cw.UseError, match=r"give numbers without a unit"):
         cw.times(*wrong)
