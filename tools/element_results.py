@@ -35,6 +35,12 @@ MEANINGS = {
     "temperature": "temperature",
     "twist": "follower minus base, the free angle taken off",
 }
+# what a signal means that has another unit than others of its name, or no declaration of its own
+BY_UNIT = {
+    ("loss", "W"): "what it draws from its supply and does not give its shaft, which becomes heat",
+    ("slip", "1"): "slip ratio that the force follows, positive where the tread is faster forward than the road",
+    ("stroke", "m"): "stroke of the piston, from the force on the plates or the way that is left to them",
+}
 
 
 def section(cls: Any, example: Example) -> Iterator[str]:
@@ -49,7 +55,13 @@ def section(cls: Any, example: Example) -> Iterator[str]:
     for name, unit in example.signals:
         last = name.rpartition(".")[2]
         if last not in unused:
-            meaning = own.get(name) or usual.get(last) or usual.get(last.removesuffix("_signal")) or _at_port(last)
+            meaning = (
+                BY_UNIT.get((last, unit))
+                or own.get(name)
+                or usual.get(last)
+                or usual.get(last.removesuffix("_signal"))
+                or _at_port(last)
+            )
             yield f"| `{name}` | {unit} | {meaning} |"
     yield ""
 

@@ -209,6 +209,22 @@ def test_events_as_table_and_csv(run: cw.Trajectory, tmp_path: Path) -> None:
     assert lines[0]["after"] == "locked"
 
 
+def test_events_take_names_alone_and_tell_the_unit_of_each_number_of_both_kinds(run: cw.Trajectory) -> None:
+    assert cw.Events(run.events, ["c1"]).units == run.events.units
+    d = two_discs()
+    law = cw.Coulomb(static=0.1, kinetic=0.1)
+    d.add(cw.Brake("b", shaft=d.mass("m", mass=1.0, speed=1.0), friction=law, gain=1.0, normal_force=10.0))
+    both = d.simulate(2.0).events
+    assert both.units["torque_before"] == "N m or N"
+    head, first, second = str(both).splitlines()
+    assert "slip acc" in head
+    assert "rad/s2" not in head
+    assert " m/s2 " in first
+    assert first.split()[-1] == "N"
+    assert " rad/s2 " in second
+    assert second.split()[-2:] == ["N", "m"]
+
+
 def test_pandas_and_xarray(run: cw.Trajectory) -> None:
     pytest.importorskip("pandas")
     frame = run.to_pandas(["engine.speed", "load.speed"])

@@ -114,6 +114,11 @@ def test_numbers_in_units_of_the_other_kind_of_motion_are_refused() -> None:
         ("0.3 - 0.1*sign(v - knee)", "expression jumps from 0.4 to 0.3 at a slip of 3 rad/s"),
         ("0.3 if v < knee or v > 80 else 0.2", "expression jumps from 0.3 to 0.2 at a slip of 3 rad/s"),
         ("0.2 + 0.1*(1 if temperature < 350 else 0)*knee/3", "expression jumps from 0.3 to 0.2 at a slip of 0.1 rad/s"),
+        ("0.3 + 0.05*abs(v - knee - 0.3)/(v - knee - 0.3)", "jumps from 0.25 to 0.35 at a slip of 3.3 rad/s"),
+        ("0.3 + 0.05*sqrt((v - knee - 0.3)**2)/(v - knee - 0.3)", "jumps from 0.25 to 0.35 at a slip of 3.3 rad/s"),
+        ("0.3 + 0.05*atan(1/(v - knee - 0.3))", "expression jumps from 0.22146 to 0.37854 at a slip of 3.3 rad/s"),
+        ("0.3 + 1e-5*(v**2 - (knee + 0.3)**2)/(v - knee - 0.3)", ""),
+        ("0.3 + 0.05*sin(v - knee - 0.3)/(v - knee - 0.3)", ""),
         ("max(0.2, 0.5 - 0.1*v) + 0*knee", ""),
         ("where(v < knee, 0.5 - 0.1*v, 0.2)", ""),
         ("0.2 + 0.1*abs(v - knee)/(1 + v)", ""),
@@ -134,6 +139,22 @@ def test_a_formula_that_jumps_is_warned_of_and_has_no_gradient(text: str, told: 
         run = d.simulate(0.1)
     with pytest.raises(cw.UseError, match=r"b.friction jumps from .*, where no event is, so that derivatives would be"):
         run.gradient(of="a.speed", by="b.friction.knee")
+
+
+def test_a_jump_is_told_with_the_slip_of_its_contact_and_one_at_rest_with_its_remedy() -> None:
+    block = cw.Driveline("block")
+    law = cw.Formula("where(v < knee, 0.4, 0.2)", knee=3.0)
+    block.add(cw.Brake("b", shaft=block.mass("a", mass=1.0, speed=10.0), friction=law, gain=1.0, normal_force=10.0))
+    with pytest.warns(cw.ModelWarning, match=r"jumps from 0.4 to 0.2 at a slip of 3 m/s"):
+        block.simulate(0.1)
+    disc = cw.Driveline("disc")
+    law = cw.Formula("where(v > 0, 0.3, 0.4*mu)", mu=1.0)
+    disc.add(cw.Brake("b", shaft=disc.shaft("a", inertia=1.0, speed=10.0), friction=law, gain=1.0, normal_force=10.0))
+    told = (
+        "jumps from 0.4 to 0.3 between rest and the least slip, .*; leave the condition out of it, and give what holds"
+    )
+    with pytest.warns(cw.ModelWarning, match=f"{told} at rest as at_rest=0.4$"):
+        disc.check()
 
 
 @pytest.mark.parametrize(

@@ -374,6 +374,23 @@ def test_a_pump_gets_no_more_oil_than_there_is() -> None:
     assert low + 101325.0 > 1e3
     (hint,) = run.hints.of("store")
     assert hint.rule == "starved pump"
+    assert hint.message.endswith("absolute, below 20 kPa")
+
+
+def test_a_spool_valve_that_empties_a_line_above_its_pilot_pressure_is_its_relief() -> None:
+    for feedback, said in ((1.0, []), (0.0, ["no relief valve"])):
+        d = cw.Driveline("regulated")
+        motor = d.shaft("motor", inertia=0.3)
+        d.add(cw.PrescribedSpeed("drive", shaft=motor, speed=100.0))
+        line = d.add(cw.OilVolume("line", volume=1e-3))
+        d.add(cw.Pump("pump", shaft=motor, outlet=line, displacement=2e-5))
+        areas = {"supply_area": 1e-5, "exhaust_area": 1e-4}
+        d.add(cw.SpoolValve("valve", supply=0.0, clutch=line, command=5e5, feedback=feedback, **areas))
+        run = d.simulate(1.0)
+        assert [hint.rule for hint in run.hints if hint.rule in ("no relief valve", "ports swapped")] == said
+        if feedback:
+            # of the span and the overlap
+            assert run["line.pressure"][-1] == pytest.approx(5e5, abs=1.1e5)
 
 
 @pytest.mark.parametrize("line", [1.2e6, cw.Constant(1.2e6)])

@@ -109,6 +109,23 @@ def test_variants_that_never_lock_are_counted(model, capsys):
     assert "lock(c1): no value in 1 of 1 variant" in told
 
 
+def test_a_jerk_with_its_window(model, capsys):
+    for window, length in (("0.02", 0.02), ("20 ms", 0.02), ("1", 1.0)):
+        asked = ["sweep", model, "--vary", "c1.gain=1", "--outputs", f"jerk(load, {window})", "--json"]
+        assert main(asked) == 0
+        told = json.loads(capsys.readouterr().out)["outputs"]["jerk(load)"]["max"]
+        system = cw.Driveline.load(model).assemble().changed({"c1.gain": 1.0})
+        assert told == pytest.approx(cw.jerk("load", length).of(cw.simulate(system)), rel=1e-9)
+    for wrong, said in (
+        ("jerk(load, 1, 2)", "jerk(SHAFT[, WINDOW]) has no more"),
+        ("peak(load.speed, 2)", "peak(SIGNAL) has no more"),
+        ("jerk(load, soon)", "soon"),
+        ("jerk(load, 0)", "window is 0.0: give a time > 0 s"),
+    ):
+        assert main(["sweep", model, "--vary", "c1.gain=1", "--outputs", wrong]) == 2
+        assert said in capsys.readouterr().err
+
+
 def test_factors_of_all_names_that_match(model, tmp_path, capsys):
     out = tmp_path / "sweep.csv"
     line = ["--vary", "*.inertia*=0.5:1:2", "--vary", "c1.g*n*=2", "--outputs", "lock(c1), jerk(load)"]

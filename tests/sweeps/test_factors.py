@@ -71,7 +71,9 @@ def test_a_design_of_factors():
          "factor could multiply; take 'F1.pressure.height'"),
         ({"load.speed": cw.times(2.0)}, "load.speed has no value in this driveline that a factor could multiply"),
         ({"load.angle": cw.times(2.0)}, "'load.angle' is 0 in this driveline, which no factor changes; give values"),
-        ({"F1.gain": [1e-4], "F*.gain": cw.times(0.9)}, "F1.gain is varied by more than one name; keep one of them"),
+        ({"F1.gain": [1e-4], "F*.gain": cw.times(0.9)}, "F1.gain is varied by 'F1.gain' and 'F*.gain'; keep one"),
+        ([{"F1.gain": cw.times(0.9)}], "'F1.gain' has factors, which multiply nothing here; give a column of them"),
+
         ({"F*.gain": cw.times(-1.0)}, "gain = -0.0005 m3: must be > 0 m3"),
     ],
 )  # fmt: skip
@@ -81,10 +83,41 @@ def test_factors_on_what_is_no_number(vary: Any, told: str):
     assert told in str(error.value)
 
 
-@pytest.mark.parametrize("wrong", [("2 Pa",), (True,), (float("nan"),), ([],), (0.9, "1")])
+@pytest.mark.parametrize(
+    "wrong", [("2 Pa",), (True,), (float("nan"),), ([],), (0.9, "1"), (None,), ({"a": "0.9"},), ({},)]
+)
 def test_what_is_no_factor(wrong: Any):
     with pytest.raises(cw.UseError, match=r"give numbers without a unit"):
         cw.times(*wrong)
+
+
+def test_factors_that_a_distribution_may_not_have():
+    for wrong in (cw.discrete(["a", 0.9]), cw.normal("1 Pa", "0.1 Pa")):
+        with pytest.raises(cw.UseError, match=r"give numbers without a unit"):
+            cw.times(wrong)
+
+
+def test_two_factors_of_a_design_are_bounds_as_any_pair():
+    pytest.importorskip("scipy")
+    pair, whole = ({"F1.gain": cw.times(how)} for how in ((0.9, 1.1), cw.uniform(0.9, 1.1)))
+    assert cw.design(pair, 16, seed=2)["F1.gain"].tolist() == cw.design(whole, 16, seed=2)["F1.gain"].tolist()
+    assert set(cw.design({"F1.gain": cw.times([0.9, 1.1])}, 16)["F1.gain"].tolist()) == {0.9, 1.1}
+
+
+def test_factors_with_labels_in_an_axis_and_a_column():
+    way = cw.times({"worn": 0.5, "new": np.array(2.0)})
+    for vary in ({"F1.gain": way}, cw.variants({"F1.gain": way})):
+        found = cw.sweep(discs(), 0.1, vary=vary, outputs="load.speed")
+        assert [found.variant(k)["F1.gain"] for k in range(2)] == [2.5e-4, 1e-3]
+
+
+def test_no_number_of_a_table_takes_a_factor():
+    d = discs()
+    d.add(cw.Torque("drive", shaft=d.shaft("other", inertia=1.0), torque=cw.Table([[0.0, 0.0], [1.0, 2.0]])))
+    with pytest.raises(cw.UseError, match=r"not a number .*; factors do not reach into it, or give values"):
+        cw.sweep(d, 0.1, vary={"drive.torque": cw.times(0.9)}, outputs="load.speed")
+    with pytest.raises(cw.UseError, match=r"vary=cw.variants\({'F1.gain': cw.times\(0.9, 1.1\)}\)"):
+        cw.Simulators(d, 2, vary={"F1.gain": cw.times(0.9, 1.1)})
 
 
 def test_the_felt_jerk_of_a_sweep_is_that_of_its_runs():

@@ -124,7 +124,12 @@ def test_values_that_are_wrong_together():
         ([3], "3 is not an output"),
         (["laod.speed"], "did you mean 'load.speed'"),
         ([cw.lock("c2")], "no contact 'c2'; did you mean 'c1'"),
-        ([cw.integral("c1.torque")], "has no exact integral: give a power, a speed"),
+        ([cw.integral("c1.torque")], "has no exact integral: give a power of an element, a speed"),
+        (
+            [cw.jerk("load", 2.0)],
+            r"jerk\(load\): two windows of 2 s take 4 s, there are 3 s of the run; give a window=",
+        ),
+        ([cw.jerk("load", between=(4.0, 5.0))], "there are 0 s of the run"),
         ([cw.at("load.speed", [1.0, 9.0])], r"9 s is after t_end = 3 s"),
         ([cw.at("load.speed", 1.0), cw.at("load.speed", 2.0)], "two outputs are called 'load.speed at'"),
     ],
@@ -132,6 +137,19 @@ def test_values_that_are_wrong_together():
 def test_what_is_no_output(outputs, words):
     with pytest.raises(cw.UseError, match=words):
         cw.sweep(discs(), 3.0, vary={"c1.gain": [1.0]}, outputs=outputs)
+
+
+def test_what_a_motor_draws_has_an_integral_and_its_loss_says_from_what_it_follows():
+    d = cw.Driveline("motor")
+    rotor = d.shaft("rotor", inertia=0.5)
+    d.add(cw.ElectricMotor("m", shaft=rotor, max_torque=100.0, command=20.0, no_load_loss=300.0))
+    asked = [cw.integral("m.electric_power"), "m.electric_energy", "m.work"]
+    found = cw.sweep(d, 2.0, vary=[{}], outputs=asked)
+    assert found["integral(m.electric_power)"][0] == found["m.electric_energy"][0]
+    # 300 W over 2 s
+    assert found["m.electric_energy"][0] - found["m.work"][0] == pytest.approx(600.0, rel=1e-9)
+    with pytest.raises(cw.UseError, match=r"it is what m.electric_energy grows by, less what m.work does; take both"):
+        cw.sweep(d, 2.0, vary=[{}], outputs=cw.integral("m.loss"))
 
 
 def test_calls_of_outputs():

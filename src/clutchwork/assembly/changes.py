@@ -297,7 +297,9 @@ def ruled(owner: Component, paths: Sequence[tuple[str, ...]]) -> Component | Law
 def is_right_law(law: Law) -> bool:
     """Whether there is no mistake in a law whose values are within their bounds, and no advice about it."""
     try:
-        return not any(law_problems(law, At("", ""), sound=True)) and not any(law.advice())
+        return not any(law_problems(law, At("", ""), sound=True)) and not any(
+            (*law.advice(), *law.slip_advice("rad/s"))
+        )
     except ArithmeticError:
         return False
 

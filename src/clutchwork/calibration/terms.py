@@ -187,13 +187,7 @@ class Jerk:
 
     def faults(self, span: TimeSpan) -> list[str]:
         """Why there is no window in a run."""
-        one = self.jerk
-        if not one.is_too_long(*span):
-            return []
-        first, last = one.inside(*span)
-        have = f"there are {max(last - first, 0.0):g} s of the run"
-        return [f"{self.name}: two windows of {one.window:g} s take {2.0 * one.window:g} s, {have}; give a window= "
-                "or between= that fits, or a longer run"]  # fmt: skip
+        return self.jerk.faults(*span)
 
     def rows(self, given: TermData) -> Rows:
         """Two values for each window: of either sign, the larger one is the size."""

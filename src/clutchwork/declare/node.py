@@ -436,6 +436,10 @@ class Law(Declared):
         """Allowed but rarely intended properties, as (quantity, what is unusual, remedy): warnings."""
         return []
 
+    def slip_advice(self, unit: str) -> Found:  # noqa: ARG002, most say nothing of the slip
+        """Such properties over the slip, in rad/s or m/s."""
+        return []
+
     def sliding(self) -> float | None:
         """Kinetic coefficient at vanishing slip; None: the compiled core evaluates it, or `problems` covers it."""
         return None

@@ -39,7 +39,7 @@ class Tyre(Heating):
     Use it where wheels slip, and for the elasticity between driveline and road. The force on the mass is `load D sin(C
     atan(B x - E (B x - atan(B x))))`; x is the slip ratio, reached over the relaxation length, and at rest a deflection
     of the tread. `torque` is that force [N], `rate` the speed of the mass over that of the tread, `slip` the ratio x,
-    positive where the wheel drives.
+    positive where the tread is faster forward than the road.
     """
 
     shaft: Node = port("wheel", domain="rotation")

@@ -196,7 +196,9 @@ def _result(
         alike=found.alike[TORQUE],
         converged=solution.converged,
         faults=tuple(faults(law)),
-        advice=tuple(f"{name} {message}; {remedy}" for name, message, remedy in law.advice()),
+        advice=tuple(
+            f"{one} {message}; {remedy}" for one, message, remedy in (*law.advice(), *law.slip_advice("rad/s"))
+        ),
         doubts=tuple(doubts),
         remarks=tuple(_remarks(search, residuals, parameters)),
         rest=search.model.rest,

@@ -16,12 +16,13 @@ from clutchwork.base.plural import counted
 from clutchwork.base.quote import quote
 from clutchwork.declare.calls import explained, explained_methods
 from clutchwork.declare.options import Options
+from clutchwork.declare.ports import directions
 from clutchwork.gradients.exact import Exact
 from clutchwork.gradients.parameters import parameters
 from clutchwork.gradients.settled import SIDES
 from clutchwork.gradients.task import GradientTask, GradientValues
 from clutchwork.laws.bases.formula import FormulaLaw
-from clutchwork.results.channels import channels
+from clutchwork.results.channels import SPEED, channels
 from clutchwork.results.gradient import Gradient
 from clutchwork.run.control import controllers
 from clutchwork.run.settings import merged, refuse_endless
@@ -280,8 +281,9 @@ def _refuse(system: System, outputs: Mapping[str, Output]) -> None:
         f"{one.name} is set by a Python function or an FMU, which has no derivative; take a table of what it gives"
         for one in controllers(system.inputs)
     ]
-    laws = ((contact.name, contact.friction) for contact in system.contacts)
-    jumps = ((name, law.jump()) for name, law in laws if isinstance(law, FormulaLaw))
+    slips = ((contact, SPEED[directions(contact)[0].domain]) for contact in system.contacts)
+    laws = ((contact.name, contact.friction, unit) for contact, unit in slips)
+    jumps = ((name, law.jump(unit)[0]) for name, law, unit in laws if isinstance(law, FormulaLaw))
     problems += [
         f"{name}.friction {jump}, where no event is, so that derivatives would be wrong; make it continuous"
         for name, jump in jumps

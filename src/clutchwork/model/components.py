@@ -39,11 +39,16 @@ def component_problems(component: Component, at: At | None = None, *, sound: boo
     yield from () if found else _slip_problems(component, at)
 
 
+def _slip_units(component: Component) -> set[str]:
+    """Units of the slips of an element."""
+    return {SLIPS[way.domain] for way in directions(component)}
+
+
 def _slip_problems(component: Component, at: At) -> Iterator[Problem]:
     """A friction law that is written for the other kind of motion."""
     law = component.friction
     if isinstance(law, Law):
-        for unit in {SLIPS[way.domain] for way in directions(component)}:
+        for unit in _slip_units(component):
             for name, message, remedy in law.slip_problems(unit):
                 yield at.inner("friction").inner(name).problem(message, remedy=remedy)
 
@@ -126,7 +131,7 @@ def _law_advice(component: Component) -> Iterator[Problem]:
         return
     units = {item.name: spec.unit for item, spec in specs(type(law))}
     try:
-        found = law.advice()
+        found = [*law.advice(), *(one for unit in _slip_units(component) for one in law.slip_advice(unit))]
     except ArithmeticError:
         yield place.problem(
             "has values too large or too small to compute with", remedy="correct the values of unusual magnitude"

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import astuple, fields
 from typing import TYPE_CHECKING, Any, overload
 
@@ -62,24 +62,40 @@ class Event:
 class Events(Sequence[Event]):
     """The events of a run in order of time; print it to read it."""
 
-    def __init__(self, events: Sequence[Event] = (), contacts: Mapping[str, Domain] | None = None) -> None:
+    def __init__(self, events: Sequence[Event] = (), contacts: Iterable[str] | None = None) -> None:
         """Events in order of time.
 
-        Parameters: contacts, those that `of` knows, by default those of the events, and the motion that each is in.
+        Parameters: contacts, those that `of` knows, by default those of the events; a mapping also says the motion that
+        each is in, by default shafts.
         """
         self._events = tuple(events)
-        self._contacts = contacts
+        on_shafts = None if contacts is None else dict.fromkeys(contacts, Domain.ROTATION)
+        self._contacts = contacts if isinstance(contacts, Mapping) else on_shafts
 
     @property
     def units(self) -> dict[str, str]:
         """Units of the fields that have one; both where some contacts are on shafts, some on masses."""
-        kinds = {(self._contacts or {}).get(event.element, Domain.ROTATION) for event in self} or {Domain.ROTATION}
+        kinds = {self._domain(event) for event in self} or {Domain.ROTATION}
         units = {}
         for name, unit in UNITS.items():
             line = ON_MASSES.get(unit, unit)
             both = [one for kind, one in ((Domain.ROTATION, unit), (Domain.TRANSLATION, line)) if kind in kinds]
             units[name] = " or ".join(dict.fromkeys(both))
         return units
+
+    def _domain(self, event: Event) -> Domain:
+        return (self._contacts or {}).get(event.element, Domain.ROTATION)
+
+    def _cells(self, event: Event, units: Mapping[str, str]) -> list[str]:
+        """What tables show of an event; where events have several units its numbers have theirs."""
+        numbers = [(event.slip_acceleration, "slip_acceleration"), (event.torque_before, "torque_before")]
+        numbers.append((event.torque_after, "torque_after"))
+        words = [f"{event.time:.9f}", event.element, event.before, event.after, event.cause]
+        for number, name in numbers:
+            text = f"{number:z.4g}" if abs(number) < 1e5 else f"{number:.3e}"
+            own = UNITS[name] if self._domain(event) is Domain.ROTATION else ON_MASSES[UNITS[name]]
+            words.append(text if own == units[name] else f"{text} {own}")
+        return words
 
     @overload
     def __getitem__(self, index: int) -> Event: ...
@@ -142,9 +158,10 @@ class Events(Sequence[Event]):
         """A table for reading."""
         units = self.units
         numbers = {"slip acc": "slip_acceleration", "torque before": "torque_before", "torque after": "torque_after"}
-        words = (f"{word} {units[name]}" for word, name in numbers.items())
+        # where there are two, each number has its own
+        words = (word if " or " in units[name] else f"{word} {units[name]}" for word, name in numbers.items())
         head = ("time s", "element", "from", "to", "cause", *words)
-        lines = [tuple(_cells(event)) for event in self]
+        lines = [tuple(self._cells(event, units)) for event in self]
         return columns([head, *lines], right={0, 5, 6, 7}) if lines else "no events"
 
     __repr__ = __str__
@@ -173,7 +190,7 @@ class Events(Sequence[Event]):
         units = self.units
         head = ("time, s", "element", "from", "to", "cause", f"slip acceleration, {units['slip_acceleration']}")
         torques = (f"torque before, {units['torque_before']}", f"torque after, {units['torque_after']}")
-        lines = map(_cells, self)
+        lines = (self._cells(event, units) for event in self)
         return html.table((*head, *torques), lines, right={0, 5, 6, 7}) if self else html.paragraph("no events")
 
     @explained("run.events.to_csv", path="'events.csv'")
@@ -215,12 +232,6 @@ def _event(row: NDArray[np.float64], at: dict[str, int], contacts: Sequence[str]
         energy_before=float(row[at["energy_before"]]),
         energy_after=float(row[at["energy_after"]]),
     )
-
-
-def _cells(event: Event) -> list[str]:
-    numbers = (event.slip_acceleration, event.torque_before, event.torque_after)
-    words = [f"{event.time:.9f}", event.element, event.before, event.after, event.cause]
-    return words + [f"{number:z.4g}" if abs(number) < 1e5 else f"{number:.3e}" for number in numbers]
 
 
 def _exact(value: object) -> object:

@@ -9,6 +9,7 @@ import numpy as np
 
 from clutchwork.base.errors import UseError
 from clutchwork.base.quote import quote
+from clutchwork.sweeps.factors import refuse_factors
 
 if TYPE_CHECKING:
     from clutchwork.assembly.system import System
@@ -22,6 +23,7 @@ def systems_of(system: System, vary: object, count: int) -> list[System]:
     columns, problems = dict[str, list[Any]](), list[str]()
     if not isinstance(vary, Mapping):
         raise UseError("cw.Simulators", [f"vary is {quote(vary)}: give a mapping from names to {count} values each"])
+    refuse_factors("cw.Simulators", vary.items())
     for name, given in vary.items():
         values = given.tolist() if isinstance(given, np.ndarray) else given
         if not isinstance(values, list | tuple) or len(values) != count:

@@ -12,10 +12,10 @@ CALLS = {
     "peak": "",
     "integral": "",
     "squared_jerk": "SHAFT",
-    "jerk": "SHAFT",
+    "jerk": "WINDOW",
     "lock": "NUMBER",
     "break_away": "NUMBER",
 }
-OF = {"SHAFT": "SHAFT", "NUMBER": "CONTACT[, NUMBER]", "": "SIGNAL"}
+OF = {"SHAFT": "SHAFT", "WINDOW": "SHAFT[, WINDOW]", "NUMBER": "CONTACT[, NUMBER]", "": "SIGNAL"}
 FORMS = [f"{call}({OF.get(more, f'SIGNAL, {more}')})" for call, more in CALLS.items()]
 KNOWN = f"known: {', '.join(FORMS)}"

@@ -87,14 +87,22 @@ class CoreOutputs:
                 yield str(error)
                 return
             if isinstance(one, Integral) and not one.kept_as(self.channels):
-                remedy = "give a power, a speed or an acceleration, or a function of the run"
-                yield f"{one.signal} has no exact integral: {remedy}"
+                yield f"{one.signal} has no exact integral: {self._instead(one.signal.removesuffix('.loss'))}"
+            if isinstance(one, FeltJerk):
+                yield from one.faults(self.begin, self.t_end)
             if isinstance(one, Extreme) and not self.channels[one.signal].unit:
                 yield f"{one.signal} is a word, which has no {one.kind}; take {one.signal.removesuffix('state')}mode"
             if isinstance(one, AtTimes) and one.times[-1] > self.t_end:
                 yield f"{one.name} {one.times[-1]:g} s is after t_end = {self.t_end:g} s"
             if isinstance(one, AtTimes) and one.times[0] < self.begin:
                 yield f"{one.name} {one.times[0]:g} s is before t_start = {self.begin:g} s"
+
+    def _instead(self, motor: str) -> str:
+        """What to take for an integral that there is not."""
+        drawn = next((name for name in self.channels if name.startswith(f"{motor}.") and name.endswith("_energy")), "")
+        if drawn:
+            return f"it is what {drawn} grows by, less what {motor}.work does; take both as outputs"
+        return "give a power of an element, a speed or an acceleration, or a function of the run"
 
     def signals(self, *kinds: type) -> list[str]:
         """Signals that outputs of some kinds are made of."""

@@ -42,7 +42,7 @@ def add_command(subparsers: Any) -> None:
         action="append",
         default=[],
         help="values: FIRST:LAST:COUNT or A,B,C, in SI or with a unit behind the last one: 'c1.pressure=1,2,3 bar'; "
-        "given several times: all combinations; c*.gain*=0.9,1.1 multiplies what stands in the model, of all names "
+        "given several times: all combinations; c*.gain*=0.9,1.1 multiplies the numbers in the model of all names "
         "that match; clutchwork check MODEL --names lists the names",
     )
     parser.add_argument(

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass
 from fnmatch import fnmatchcase
 from math import isfinite
@@ -29,23 +29,47 @@ class Factors:
 def times(*factors: Any) -> Factors:
     """Factors on the number that stands in the model, for `sweep` and `design`.
 
-    Parameters: factors, one or several, a list of them, or for `design` a distribution, such as `cw.normal(1.0, 0.02)`.
-    A name may be a pattern then: `{"F*.gain": cw.times(0.9, 1.1)}` multiplies the gains of all elements whose names
-    begin with F, all by the same factor.
+    Parameters: factors, one or several, a list of them, factors by label, or for `design` a distribution, such as
+    `cw.normal(1.0, 0.02)`, or (low, high). A name may be a pattern then: `{"F*.gain": cw.times(0.9, 1.1)}` multiplies
+    the gains of all elements whose names begin with F, all by the same factor. Temperatures are multiplied in kelvin.
     """
-    how: Any = factors[0] if len(factors) == 1 and not isinstance(factors[0], Real) else list(factors)
-    if hasattr(how, "tolist"):
-        how = how.tolist()
-    if isinstance(how, list | tuple):
-        how = list(how)
-        wrong = [one for one in how if not isinstance(one, Real) or isinstance(one, bool) or not isfinite(float(one))]
-        if wrong or not how:
-            what = f"{quote(wrong[0])} is not a factor" if wrong else "there are no factors"
-            raise UseError("times", [f"{what}; give numbers without a unit, such as cw.times(0.9, 1.1)"])
-        how = [float(one) for one in how]
-    elif isinstance(how, str) or getattr(how, "unit", None):
-        raise UseError("times", [f"{quote(how)} is not a factor; give numbers without a unit"])
-    return Factors(how)
+    given: Any = factors[0] if len(factors) == 1 else list(factors)
+    given = given.tolist() if hasattr(given, "tolist") else given
+    if isinstance(given, Mapping):
+        return Factors(dict(zip(given, _plain(given.values()), strict=True)))
+    if isinstance(given, Real):
+        return Factors(_plain([given]))
+    if isinstance(given, Iterable) and not isinstance(given, str):
+        # a tuple stays one: for a design two of them are bounds
+        return Factors(tuple(_plain(given)) if isinstance(given, tuple) else _plain(given))
+    if hasattr(given, "codes"):
+        _plain(given.values)
+    elif getattr(given, "unit", None) or not any(callable(getattr(given, name, None)) for name in ("quantile", "ppf")):
+        _plain([given])
+    return Factors(given)
+
+
+def _plain(given: Iterable[Any]) -> list[float]:
+    """Factors as numbers; UseError for what is none."""
+    numbers = [one.item() if getattr(one, "shape", None) == () else one for one in given]
+    wrong = [one for one in numbers if not _is_number(one) or not isfinite(float(one))]
+    if wrong or not numbers:
+        what = f"{quote(wrong[0])} is not a factor" if wrong else "there are no factors"
+        raise UseError("times", [f"{what}; give numbers without a unit, such as cw.times(0.9, 1.1)"])
+    return [float(one) for one in numbers]
+
+
+def _is_number(value: Any) -> bool:
+    return isinstance(value, Real) and not isinstance(value, bool)
+
+
+def refuse_factors(call: str, given: Iterable[tuple[Any, Any]]) -> None:
+    """Refuse factors among values of single variants by name."""
+    names = dict.fromkeys(name for name, value in given if isinstance(value, Factors))
+    if names:
+        remedy = "give a column of them: cw.sweep(..., vary=cw.variants({{{name!r}: cw.times(0.9, 1.1)}}))"
+        told = "{name!r} has factors, which multiply nothing here; "
+        raise UseError(call, [(told + remedy).format(name=name) for name in names])
 
 
 def multiplied(model: Model, name: str) -> dict[str, float]:
@@ -72,10 +96,12 @@ def _number_of(owners: Mapping[str, Any], name: str) -> Any:
 def _faults(model: Model, name: str, found: Mapping[str, Any]) -> Iterator[str]:
     numbers = {one: value for one, value in found.items() if value is not None}
     for one, value in numbers.items():
-        if not isinstance(value, Real) or isinstance(value, bool):
-            inside = [path for path in all_names(model) if path.startswith(f"{one}.")]
-            remedy = f"; take {inside[0]!r} or another number inside of it" if inside else ""
-            yield f"{one} is {quote(value)}, not a number that a factor could multiply{remedy}"
+        if not _is_number(value):
+            owners = named(model)
+            names = (path for path in all_names(model) if path.startswith(f"{one}."))
+            inside = [path for path in names if _is_number(held := _number_of(owners, path)) and held]
+            into = f"take {inside[0]!r} or another number inside of it" if inside else "factors do not reach into it"
+            yield f"{one} is {quote(value)}, not a number that a factor could multiply; {into}, or give values: [...]"
             return
     if name in found and not numbers:
         yield f"{name} has no value in this driveline that a factor could multiply; give values: [...]"

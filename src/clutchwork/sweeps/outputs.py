@@ -109,7 +109,8 @@ class Integral:
     def kept_as(self, names: Any) -> str:
         """The signal whose change it is, empty where there is none."""
         owner, _, last = self.signal.rpartition(".")
-        found = (f"{owner}.{word}" for word in (INTEGRALS.get(last), ON_MASSES.get(last)) if word)
+        drawn = f"{last.removesuffix('_power')}_energy" if last.endswith("_power") else ""
+        found = (f"{owner}.{word}" for word in (INTEGRALS.get(last), ON_MASSES.get(last), drawn) if word)
         return next((name for name in found if name in names), "")
 
     def of(self, run: Trajectory) -> Any:
@@ -170,6 +171,15 @@ class FeltJerk:
         """Whether a run has no two windows."""
         first, last = self.inside(begin, end)
         return last - first < 2.0 * self.window * (1.0 - 1e-9)
+
+    def faults(self, begin: float, end: float) -> list[str]:
+        """Why there is no window in a run."""
+        if not self.is_too_long(begin, end):
+            return []
+        first, last = self.inside(begin, end)
+        have = f"there are {max(last - first, 0.0):g} s of the run"
+        return [f"{self.name}: two windows of {self.window:g} s take {2.0 * self.window:g} s, {have}; give a window= "
+                "or between= that fits, or a longer run"]  # fmt: skip
 
     def times(self, begin: float, end: float) -> Array:
         """Instants a small part of a window apart, at which a run gives the speed [s]; none if it is too short."""

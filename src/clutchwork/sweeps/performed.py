@@ -19,7 +19,7 @@ from clutchwork.declare.wording import words_of_files
 from clutchwork.driveline.driveline import Driveline
 from clutchwork.run.flags import given_options
 from clutchwork.sweeps import outputs as made
-from clutchwork.sweeps.asking import CALLS, KNOWN
+from clutchwork.sweeps.asking import CALLS, FORMS, KNOWN
 from clutchwork.sweeps.factors import times
 from clutchwork.sweeps.result import Sweep, SweepInterrupted
 from clutchwork.sweeps.sweep import sweep
@@ -157,8 +157,11 @@ def _output(text: str) -> Any:
     call, (name, *rest) = found[1], [part.strip() for part in found[2].split(",")]
     if call not in CALLS:
         raise UseError("sweep", [f"--outputs {text}: no output {call!r}{near(call, CALLS, KNOWN)}"])
+    most = {"at": None, "jerk": 1, "lock": 1, "break_away": 1}.get(call, 0)
+    if most is not None and len(rest) > most:
+        raise UseError("sweep", [f"--outputs {text}: {FORMS[[*CALLS].index(call)]} has no more"])
     try:
-        numbers = [_instant(part) if call == "at" else int(part) for part in rest]
+        numbers = [_instant(part) if call in ("at", "jerk") else int(part) for part in rest]
     except ValueError:
         raise UseError("sweep", [f"--outputs {text}: {', '.join(rest)} must be numbers"]) from None
     return getattr(made, call)(name, *([numbers] if call == "at" else numbers))

@@ -44,7 +44,7 @@ def sweep(
 
     Parameters: t_end [s], or with a unit, options and their fields by name are those of `simulate`; vary, values by
     name (all combinations), a list with the values of each variant, `cw.variants` or a DataFrame; in place of values
-    `cw.times(0.9, 1.1)` multiplies what stands in the model, of all names that match a pattern; outputs, what is
+    `cw.times(0.9, 1.1)` multiplies the numbers in the model of all names that match a pattern; outputs, what is
     kept; threads, how many run at once, by default as many as there are cores; on, where they run: this process,
     "ray" or "dask" for processes, the address of a cluster for other machines; progress, True for a bar of tqdm, or a
     function of (variants done, variants).

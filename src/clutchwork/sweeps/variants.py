@@ -16,7 +16,7 @@ from clutchwork.declare.calls import explained
 from clutchwork.model import changes
 from clutchwork.model.changes import Target, named, target
 from clutchwork.model.model import Model
-from clutchwork.sweeps.factors import Factors, multiplied
+from clutchwork.sweeps.factors import Factors, multiplied, refuse_factors
 
 Codes = NDArray[np.int64]
 PLAIN = (bool, int, float, str)
@@ -83,7 +83,9 @@ class Variants:
         names = [one.name for one in made]
         twice = sorted({name for name in names if names.count(name) > 1})
         if twice:
-            raise UseError("sweep", [f"{name} is varied by more than one name; keep one of them" for name in twice])
+            by = {name: [one.name for one in self.varied for own in one.plain if own.name == name] for name in twice}
+            told = [f"{name} is varied by {' and '.join(map(quote, by[name]))}; keep one of them" for name in twice]
+            raise UseError("sweep", told)
         return Variants(tuple(made), self.count)
 
     def part(self, first: int, last: int) -> Variants:
@@ -137,7 +139,7 @@ def variants(columns: Mapping[str, Any]) -> Variants:
         raise UseError("variants", [f"{quote(columns)} is not a table; give columns by name"])
     factors = {name for name, values in columns.items() if isinstance(values, Factors)}
     given = {name: values.how if name in factors else values for name, values in columns.items()}
-    listed = {name: _listed(name, values, labelled=False)[0] for name, values in given.items()}
+    listed = {name: _listed(name, values, labelled=name in factors)[0] for name, values in given.items()}
     _refuse_empty([name for name, values in listed.items() if not values])
     lengths = {name: len(values) for name, values in listed.items()}
     if len(set(lengths.values())) > 1:
@@ -193,6 +195,7 @@ def _of_list(rows: Sequence[Mapping[str, Any]]) -> Variants:
     if not rows:
         raise UseError("sweep", ["vary is an empty list; give at least one variant, such as [{'c1.gain': 5e-4}]"])
     names = list(dict.fromkeys(name for row in rows for name in row))
+    refuse_factors("sweep", (item for row in rows for item in row.items()))
     missing = [
         f"variant {number} has no {name!r}; give every variant a value of each name"
         for number, row in enumerate(rows)

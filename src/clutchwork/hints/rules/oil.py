@@ -38,8 +38,11 @@ def _pump(flow: Any) -> str:
 
 @model_rule(BURSTS)
 def no_relief_valve(system: System) -> Iterator[Hint]:
-    """A pump that delivers into a volume that no relief valve and no open orifice takes oil from."""
+    """A pump that delivers into a volume that no valve with a set pressure and no open orifice takes oil from."""
     relieved = {_oil(valve.inlet) for valve in _of(system, "relief_valve")}
+    relieved |= {
+        _oil(valve.clutch) for valve in _of(system, "spool_valve") if valve.feedback and not _oil(valve.exhaust)
+    }
     bores = [(_oil(bore.inlet), _oil(bore.outlet)) for bore in _of(system, "orifice")]
     for flow in _of(system, "pump_flow"):
         there = {_oil(flow.outlet)}
@@ -64,7 +67,12 @@ def ports_swapped(system: System) -> Iterator[Hint]:
         if one.kind == "pump_flow":
             wrong, why = bool(after) and getattr(one, first) == 0, f"takes oil out of {after} and delivers to the sump"
         else:
-            wrong, why = after in fed and before not in fed, f"has {after}, which a pump fills, as its {second}"
+            # a spool valve may also fill a line from a fixed pressure, or empty it
+            is_way = bool(before) or one.kind != "spool_valve"
+            wrong, why = (
+                is_way and after in fed and before not in fed,
+                f"has {after}, which a pump fills, as its {second}",
+            )
         if wrong:
             yield Hint(SWAPPED, (_pump(one),), why, f"swap {first} and {second} if that is not meant")
 
@@ -81,7 +89,7 @@ def starved_pump(look: Look) -> Iterator[Hint]:
         if len(low):
             begin, end = (float(t) for t in look.time[low[[0, -1]]])
             least = float(np.min(pressure)) + 101325.0
-            down = f"{inlet} comes down to {shown(least, 'Pa')} absolute"
+            down = f"{inlet} comes down to {shown(least, 'Pa')} absolute, below {(FILLED + 101325.0) / 1e3:.3g} kPa"
             message = f"is not filled between {begin:.4g} and {end:.4g} s: {down}"
             remedy = f"let more oil into {inlet}, or turn the pump slower"
             yield Hint(STARVED, (_pump(flow), inlet), message, remedy, {"pressure [Pa]": least}, begin, end)

@@ -133,17 +133,28 @@ class FormulaLaw(Law):
 
     def advice(self) -> Found:
         spare = [name for name in INPUTS[1:] if getattr(self, name) is not None and not self.reads(name)]
-        found = [(name, "is in no expression", "remove it, or use it in an expression") for name in spare]
-        jump = self.jump()
-        if jump:
-            remedy = "make it continuous, or take a FrictionTable, whose points end steps"
-            found.append(("expression", f"{jump}, where no step ends and gradients do not exist", remedy))
-        return found
+        return [(name, "is in no expression", "remove it, or use it in an expression") for name in spare]
 
-    def jump(self) -> str:
-        """Where it jumps, in words, within the inputs at which it is checked; empty: nowhere."""
+    def slip_advice(self, unit: str) -> Found:
+        jump, remedy = self.jump(unit)
+        return [("expression", f"{jump}, where no step ends and gradients do not exist", remedy)] if jump else []
+
+    def jump(self, unit: str) -> tuple[str, str]:
+        """Where it jumps within the inputs of its check, "jumps from 0.4 to 0.2 at a slip of 3 rad/s", and a remedy.
+
+        Both are empty where it does not. Parameters: unit, that of the slip.
+        """
         program, _ = self._program
-        return "" if program is None else first_jump(program, self.places(program), self.slips())
+        found = None if program is None else first_jump(program, self.places(program), self.slips())
+        if program is None or found is None:
+            return "", ""
+        text = f"jumps from {found.before:g} to {found.after:g}"
+        if found.from_rest and found.of_coefficient:
+            given = f"and give what holds at rest as at_rest={found.before:g}"
+            rest = f"leave the condition out of it, {given if self.at_rest is None else 'for at_rest holds there'}"
+            return f"{text} between rest and the least slip", rest
+        remedy = "make it continuous, or take a FrictionTable, whose points end steps"
+        return f"{text} {where(program, found.at, unit)}", remedy
 
     def slips(self) -> tuple[float, ...]:
         """Slips at which it is checked, rising."""

@@ -1,9 +1,9 @@
-"""Jumps of a formula, found where one of its conditions changes between two of the inputs at which it is checked."""
+"""Jumps of a formula, where a condition or the sign of a denominator changes between two inputs of its check."""
 
 from __future__ import annotations
 
 from itertools import pairwise
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, NamedTuple
 
 from clutchwork.laws.bases.expression import PRESSURE, SLIP, TEMPERATURE
 
@@ -17,39 +17,55 @@ Inputs = dict[str, float]
 # operations whose results jump, and what counts as a jump of a coefficient or a rate, of its size
 CONDITIONS = ("less", "sign")
 JUMP = 1e-6
+# which of their operands divides; nearer to its zero than so many halvings a quotient is round-off
+DENOMINATORS = {"divide": 1, "add_quotient": 2, "subtract_quotient": 2}
+FEW_HALVINGS = 27
 # slips [rad/s] at which conditions over temperature and pressure are looked for, and a value of the states
 SOME_SLIPS = (0.1, 1.0, 10.0, 100.0)
 STATE = 0.1
 HALVINGS = 60
 
 
-def first_jump(program: Program, places: Sequence[Mapping[str, float]], slips: Sequence[float]) -> str:
-    """The first jump in words: "jumps from 0.4 to 0.2 at a slip of 3 rad/s"; empty where there is none.
+class FormulaJump(NamedTuple):
+    """A result of a formula that differs on both sides of a condition."""
+
+    before: float
+    after: float
+    at: Inputs
+    of_coefficient: bool
+    from_rest: bool  # whether it lies between a slip of exactly zero and all others
+
+
+def first_jump(program: Program, places: Sequence[Mapping[str, float]], slips: Sequence[float]) -> FormulaJump | None:
+    """The first jump; None where there is none.
 
     Parameters: places, inputs other than the slip; slips, rising.
     """
     first = 3 + len(program.states) + len(program.names) + len(program.constants)
     conditions = [first + k for k, node in enumerate(program.nodes) if node.operation in CONDITIONS]
-    if not conditions:
-        return ""
+    divisors = [node.of[DENOMINATORS[node.operation]] for node in program.nodes if node.operation in DENOMINATORS]
+    if not conditions and not divisors:
+        return None
     results = (program.coefficient, program.at_rest, *program.rates)
 
-    def seen(at: Inputs) -> tuple[list[float], list[float]]:
+    def seen(at: Inputs) -> tuple[tuple[list[float], list[bool]], list[float]]:
         registers = program.run({**dict.fromkeys(program.states, STATE), **at})
-        return [registers[i] for i in conditions], [registers[i] for i in results]
+        told = [registers[i] for i in conditions], [registers[i] > 0.0 for i in divisors]
+        return told, [registers[i] for i in results]
 
     for before, after in _segments(places, slips):
-        if seen(before)[0] == seen(after)[0]:
+        (own, first_values), (others, last_values) = seen(before), seen(after)
+        if own == others:
             continue
         low, high = before, after
-        sizes = [max(abs(a), abs(b)) for a, b in zip(seen(before)[1], seen(after)[1], strict=True)]
-        for _ in range(HALVINGS):
+        sizes = [max(abs(a), abs(b)) for a, b in zip(first_values, last_values, strict=True)]
+        for _ in range(HALVINGS if own[0] != others[0] else FEW_HALVINGS):
             middle = {name: 0.5 * (low[name] + high[name]) for name in low}
-            low, high = (middle, high) if seen(middle)[0] == seen(before)[0] else (low, middle)
-        for one, other, size in zip(seen(low)[1], seen(high)[1], sizes, strict=True):
+            low, high = (middle, high) if seen(middle)[0] == own else (low, middle)
+        for place, (one, other, size) in enumerate(zip(seen(low)[1], seen(high)[1], sizes, strict=True)):
             if abs(one - other) > JUMP * max(abs(one), abs(other), size):
-                return f"jumps from {one:g} to {other:g} {where(program, high)}"
-    return ""
+                return FormulaJump(one, other, high, place == 0, slips[0] == low[SLIP] == 0.0 < high[SLIP])
+    return None
 
 
 def _segments(places: Sequence[Mapping[str, float]], slips: Sequence[float]) -> Iterator[tuple[Inputs, Inputs]]:
@@ -62,9 +78,9 @@ def _segments(places: Sequence[Mapping[str, float]], slips: Sequence[float]) -> 
             yield {**one, SLIP: slip}, {**other, SLIP: slip}
 
 
-def where(program: Program, at: Mapping[str, float]) -> str:
+def where(program: Program, at: Mapping[str, float], unit: str = "rad/s") -> str:
     """Values of the inputs in words: "at a slip of 3 rad/s and 400 K"."""
-    said = [f"a slip of {at.get(SLIP, 0.0):g} rad/s"]
+    said = [f"a slip of {at.get(SLIP, 0.0):g} {unit}"]
     said += [f"{at[TEMPERATURE]:g} K"] if TEMPERATURE in program.reads else []
     said += [f"{at[PRESSURE]:g} Pa"] if PRESSURE in program.reads else []
     return f"at {' and '.join(said)}"
