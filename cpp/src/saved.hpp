@@ -27,8 +27,8 @@ void describe(W& ws, A& a) {
   a.whole(ws.guard.reversals, 0, 1 << 30), a.whole(ws.guard.reversals_since, 0, most);
   a.number(ws.guard.balanced_at), a.number(ws.guard.zero, 0, 1e300);
   a.number(ws.fixed.time), a.number(ws.fixed.before, 0, 1e300), a.number(ws.fixed.origin);
-  a.whole(ws.fixed.count, 0, most), a.whole(ws.fixed.impacts, 0, most);
-  a.number(ws.in.time), a.whole(ws.events.n, 0, EventBuffer::room + 2 * nc);
+  a.whole(ws.fixed.count, 0, most), a.whole(ws.fixed.impacts, 0, most), a.whole(ws.fixed.fresh, 0, 1);
+  a.number(ws.in.time), a.whole(ws.events.n, 0, EventBuffer::room + 3 * nc);
   a.whole(ws.detail.component, -1, nd - 1), a.number(ws.detail.value), a.whole(ws.detail.row, -1, ws.row.size - 1);
 
   for (std::int64_t i = 0; i < s.inputs; ++i) a.cursor(int(i), ws.in.signal[i]);

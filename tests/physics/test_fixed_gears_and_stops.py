@@ -208,3 +208,92 @@ def test_an_engine_at_rest_stays_there() -> None:
     exact, run = d.simulate(0.05), d.simulate(0.05, **fixed(1e-3))
     assert np.abs(exact["crank.speed"]).max() < 1e-9
     assert np.abs(run["crank.speed"]).max() < 1e-9
+
+
+def hoist(count: int) -> cw.Driveline:
+    """Worm gears that lock themselves, each driven forward while its heavy load would turn it back."""
+    d = cw.Driveline("hoists")
+    for i in range(count):
+        worm, wheel = d.shaft(f"worm{i}", inertia=0.05, speed=60.0), d.shaft(f"wheel{i}", inertia=40.0)
+        gear = {"ratio": 30.0, "lead_angle": 0.08, "friction_coefficient": 0.3}
+        d.add(cw.WormGear(f"gear{i}", worm=worm, wheel=wheel, **gear))
+        d.add(cw.Torque(f"motor{i}", shaft=worm, torque=cw.Table([(0.0, 5.0), (0.1, 5.0), (0.3, -5.0)])))
+        d.add(cw.Torque(f"load{i}", shaft=wheel, torque=-100.0))
+    return d
+
+
+@pytest.mark.parametrize("count", [1, 2, 3])
+def test_gears_that_lock_themselves_do_not_know_of_each_other(count: int) -> None:
+    """Heavy wheels, at which the friction would feed itself on the wrong line; each alone decides that."""
+    d, times = hoist(count), np.linspace(0.0, 1.5, 31)
+    exact, run = d.simulate(1.5, times=times, rtol=1e-9), d.simulate(1.5, times=times, **fixed(1e-3))
+    assert run.finished, run.message
+    for i in range(count):
+        # rad/s of 60: of first order where it locks
+        assert np.abs(run[f"worm{i}.speed"] - exact[f"worm{i}.speed"]).max() < 0.1
+
+
+def test_an_impact_before_a_knot_of_the_same_step() -> None:
+    """The part of a step up to an impact has the signals of that part."""
+    d = cw.Driveline("late")
+    disc = d.shaft("disc", inertia=1.0, speed=-1.0)
+    d.add(cw.EndStop("stop", follower=disc, lower=-0.052, lower_restitution=0.5))
+    d.add(cw.Torque("push", shaft=disc, torque=cw.Table([(0.0, 0.0), (0.0545, 0.0), (0.0545, 1000.0), (1.0, 1000.0)])))
+    run = d.simulate(0.06, times=[0.06], **fixed(5e-3))
+    assert [(event.element, event.cause) for event in run.events] == [("stop", "impact")]
+    assert run.events[0].time == pytest.approx(0.052, abs=1e-12)
+    # half of 1 rad/s back, then the torque over what is left of the middle of the step on
+    assert run["disc.speed"][-1] == pytest.approx(0.5 + 1000.0 * 5.5e-3, abs=1000.0 * 5e-3)
+
+
+def test_a_row_at_the_instant_of_an_impact_is_there() -> None:
+    d = cw.Driveline("end")
+    disc = d.shaft("disc", inertia=1.0, speed=1.0)
+    d.add(cw.EndStop("stop", follower=disc, upper=0.0105, upper_restitution=0.5))
+    run = d.simulate(0.0105, times=[0.0, 0.0105], **fixed(1e-3))
+    assert run.time.tolist() == [0.0, 0.0105]
+    steps = d.simulate(0.0105, output="steps", **fixed(1e-3))
+    # both sides of it
+    assert steps["disc.speed"][-2:] == pytest.approx([1.0, -0.5])
+
+
+def swung(gap: float) -> cw.Driveline:
+    """Two free discs with play, thrown from one flank to the other."""
+    d = cw.Driveline("swung")
+    a, b = d.shaft("a", inertia=1.0), d.shaft("b", inertia=1.0)
+    d.add(cw.Backlash("play", base=a, follower=b, gap=gap))
+    d.add(cw.Torque("drive", shaft=a, torque=cw.Sine(amplitude=500.0, frequency=11.0)))
+    return d
+
+
+@pytest.mark.parametrize("step", [7e-3, 1e-3])
+def test_no_flank_is_passed(step: float) -> None:
+    """One that opens in a step may meet the other flank in it; positions stay those of the shafts."""
+    run = swung(1e-3).simulate(2.0, output="steps", **fixed(step))
+    assert len(run.events) > 50
+    twist = run["b.angle"] - run["a.angle"]
+    # each impact misses the flank by what the second order leaves of its part of a step
+    assert np.abs(twist).max() < 0.5e-3 * (1 + 1e-2)
+
+
+def test_what_an_impact_breaks_loose_is_an_event() -> None:
+    d = cw.Driveline("struck")
+    a, b = d.shaft("a", inertia=1.0, speed=1.0), d.shaft("b", inertia=1.0, speed=1.0)
+    law = cw.Coulomb(static=0.2, kinetic=0.1)
+    d.add(cw.Clutch("c", base=a, follower=b, friction=law, gain=1.0, normal_force=10.0, locked=True))
+    d.add(cw.EndStop("stop", follower=a, upper=0.0105, upper_restitution=0.5))
+    told = [
+        [(e.element, e.before, e.after, e.cause) for e in d.simulate(0.05, **how).events] for how in ({}, fixed(1e-3))
+    ]
+    assert ("c", "locked", "forward", "other event") in told[0]
+    assert ("c", "locked", "forward", "other event") in told[1]
+
+
+def test_calls_that_end_behind_an_impact_change_nothing() -> None:
+    """More events than one call holds, and calls of their own."""
+    system = swung(1e-3).assemble()
+    times = np.linspace(0.0, 8.0, 5)
+    whole = cw.simulate(system, 8.0, times=times, **fixed(1e-3))
+    assert len(whole.events) > 300
+    steps = cw.simulate(system, 8.0, output="steps", **fixed(1e-3))
+    assert steps["a.speed"][-1] == whole["a.speed"][-1]

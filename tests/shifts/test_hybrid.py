@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
+from dataclasses import replace
 from math import inf
 
 import numpy as np
@@ -20,7 +22,9 @@ TABLES = {
 SPEEDS = [(0.0, 110.0), (30e3, 180.0), (100e3, 400.0)]  # W, rad/s
 
 
-def hybrid(box: cw.Gearbox, mode: str, **battery: float) -> tuple[cw.Driveline, cw.Engine, cw.Battery]:
+def hybrid(
+    box: cw.Gearbox, mode: str, initial: float = 0.6, **battery: float
+) -> tuple[cw.Driveline, cw.Engine, cw.Battery]:
     d = cw.Driveline(box.name)
     crank, out = d.shaft("crank", inertia=0.2, speed=110.0), d.shaft("out", inertia=0.02)
     axle, body = d.shaft("axle", inertia=1.0, speed=0.0), d.mass("car", mass=2200.0)
@@ -32,7 +36,7 @@ def hybrid(box: cw.Gearbox, mode: str, **battery: float) -> tuple[cw.Driveline, 
     ]
     loads = {"load": cw.SupplyPower(motors[0]), "second_load": cw.SupplyPower(motors[1])}
     cells = {"charges": (0.0, 1.0), "voltages": (280.0, 320.0), "resistances": (0.3, 0.25), "capacity": 23400.0}
-    store = cw.Battery("battery", initial_charge=0.6, **cells, **loads, **battery)
+    store = cw.Battery("battery", initial_charge=initial, **cells, **loads, **battery)
     for part in (gearbox, engine, *motors, store):
         d.add(part)
     d.add(cw.Gear("final", input=out, output=axle, ratio=3.4 if "EVT1" in box.gears else 1.0))
@@ -163,10 +167,15 @@ def test_backward_and_forward_again(name: str, mode: str) -> None:
         ways.append(float(run["car.speed"][-1]))
     assert ways[0] < -1.0
     assert ways[1] > 1.0
-    control.request("R")
-    run = drive(sim, control, 40.0, throttle=-0.5, sensed=CHARGE)
-    # pulled back where the driver brakes in reverse, never faster forward
-    assert abs(run["car.speed"][-1]) <= ways[1] + 0.1
+    # the brake pedal stops it whichever way it rolls, and wherever the lever is
+    for until, direction, lever in ((26.0, "D", "D"), (38.0, "D", "R"), (50.0, "R", "D"), (62.0, "R", "R")):
+        control.request(direction)
+        before = drive(sim, control, until - 8.0, throttle=0.3, sensed=CHARGE)["car.speed"][-1]
+        assert before * (1.0 if direction == "D" else -1.0) > 0.5
+        control.request(lever)
+        run = drive(sim, control, until, throttle=-1.0, sensed=CHARGE)
+        # it fades with the speed near rest: 1.4 s, its mass over the braking per speed, in the slower of both
+        assert abs(run["car.speed"][-1]) < 0.01 * abs(before)
     assert not [record for record in control.records if not record.reached]
 
 
@@ -190,15 +199,70 @@ def test_the_engine_stands_where_little_is_wanted() -> None:
     assert np.max(felt[quiet]) < 10.0
 
 
+@pytest.mark.parametrize("limits", [{}, {"limits": lambda _: (-inf, inf)}], ids=["known", "unknown"])
+def test_an_empty_battery_starts_the_engine(limits: dict[str, Callable[[float], tuple[float, float]]]) -> None:
+    """However much is to be driven without it, the engine starts before the battery is empty, and charges it."""
+    box = cw.Gearbox.load("toyota-p410")
+    d, engine, store = hybrid(box, "split", 0.02, max_current=150.0)
+    sim, control = controlled(box, d, engine, store, 1800.0, electric=60e3)
+    control.settings = replace(control.settings, **limits)
+    run = drive(sim, control, 30.0, throttle=0.5, sensed=CHARGE)
+    assert run["crank.speed"][-1] > 110.0
+    assert run["battery.charge"][-1] > 0.02
+    assert np.min(run["battery.charge"]) > 0.005
+    assert run["battery.unserved"][-1] < 1e-6 * run.energy.turnover
+    with pytest.raises(cw.UseError, match=r"electric of the settings needs .*Sensed\(charge=\"battery.charge\"\)"):
+        drive(sim, control, 31.0, throttle=0.5)
+
+
 def test_what_is_wrong_is_said() -> None:
     box = cw.Gearbox.load("gm-2ml70")
     d, engine, _ = hybrid(box, "EVT1")
     plant = cw.shifts.plant_of(d.assemble(), box)
     more = {"engine": EngineSource.of(engine), "settings": HybridSettings([(0.0, 900.0)], SPEEDS)}
+    both = {name: TorqueSource(f"{name}.command", -1.0, 1.0) for name in box.machines}
+    good = {"box": box, "plant": plant, "machines": both, **more}
+    wrong = {
+        "box": ("x", "box is 'x': give a cw.Gearbox"),
+        "plant": (d, "plant is <Driveline"),
+        "engine": (cw.Engine, "engine is .*Engine.*: give cw.shifts.EngineSource.of"),
+        "settings": (None, "settings is None: give cw.shifts.HybridSettings"),
+        "machines": (both | {"MGB": "MGB"}, "machine 'MGB' is 'MGB': give a cw.shifts.TorqueSource"),
+    }
+    for name, (value, words) in wrong.items():
+        with pytest.raises(cw.UseError, match=words):
+            HybridController(**good | {name: value})
+    with pytest.raises(cw.UseError, match="machines is None"):
+        HybridController(**good | {"machines": None})
+    with pytest.raises(cw.UseError, match=r"cw.shifts.HybridController\(\): 4 problems\n *plant is missing"):
+        HybridController(box)
     with pytest.raises(cw.UseError, match="give sources for MGB"):
         HybridController(box, plant, machines={"MGA": TorqueSource("MGA.command", -1.0, 1.0)}, **more)
-    both = {name: TorqueSource(f"{name}.command", -1.0, 1.0) for name in box.machines}
     with pytest.raises(cw.UseError, match="'2' is not a split"):
         HybridController(box, plant, machines=both, mode="2", **more)
     with pytest.raises(cw.UseError, match="'P' is not a direction: request 'D' or 'R'"):
         HybridController(box, plant, machines=both, **more).request("P")
+
+
+@pytest.mark.parametrize(
+    ("name", "values", "bound"),
+    [
+        ("electric", ("12 kW", None, -1.0, float("nan"), inf), "give a power in W, 0 or above"),
+        ("charge_power", ("50 kW", -1.0, inf), "give a power in W, 0 or above"),
+        ("charge", (60, -0.1, None), "give a number from 0 to 1"),
+        ("follow", (0.0, -4.0, "4"), "give a rate in 1/s, above 0"),
+        ("limits", ((-1e4, 1e4), None), "give a function of the charge"),
+        ("shift", (None,), "give cw.shifts.ShiftSettings"),
+        ("output_torque", (900.0, [], [(0.0, "x")], [(1.0, 2.0), (0.0, 1.0)], [(0.0, inf)]), "give points of two"),
+        ("engine_speed", (None, [(0.0, 110.0), (0.0, 120.0)]), "give points of two"),
+    ],
+)
+def test_settings_have_bounds(name: str, values: tuple[object, ...], bound: str) -> None:
+    for value in values:
+        with pytest.raises(cw.UseError, match=rf"cw.shifts.HybridSettings: 1 problem\n  {name} is .*: {bound}"):
+            HybridSettings(**{"output_torque": [(0.0, 900.0)], "engine_speed": SPEEDS, name: value})
+    # all at once
+    with pytest.raises(cw.UseError, match="3 problems"):
+        HybridSettings([], SPEEDS, charge=2.0, electric=-1.0)
+    with pytest.raises(cw.UseError, match=r"cw.shifts.HybridSettings\(\): 1 problem\n  engine_speed is missing"):
+        HybridSettings([(0.0, 900.0)])

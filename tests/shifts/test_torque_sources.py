@@ -133,6 +133,28 @@ def test_without_motors_nothing_changes() -> None:
     assert np.min(run["combustion.throttle"]) == pytest.approx(0.4 * 0.7)
 
 
+def test_inertia_behind_springs_and_gears() -> None:
+    """What is fixed to a node behind a spring counts with the square of its speed over that of the input."""
+    behind = {}
+    for name, ratio in (("none", None), ("one", 1.0), ("two", 2.0), ("both", -0.5)):
+        d = cw.Driveline(name)
+        engine, turbine = d.shaft("engine", inertia=0.2), d.shaft("turbine", inertia=0.03)
+        out = d.shaft("out", inertia=1.0)
+        shaft = engine
+        if ratio is not None:
+            # engine speed = ratio * that of the shaft
+            shaft = d.shaft("shaft", inertia=0.01)
+            d.add(cw.Gear("step", input=engine, output=shaft, ratio=ratio))
+        if name == "both":
+            # a second spring behind the gear, with a flywheel
+            d.add(cw.SpringDamper("pendulum", base=engine, follower=d.shaft("wheel", inertia=0.07), stiffness=1e3))
+        d.add(cw.SpringDamper("spring", base=shaft, follower=turbine, stiffness=1e4, damping=10.0))
+        gearbox = cw.Transmission("gearbox", gearbox=BOX, input=turbine, output=out, inertia=0.005, torque=500.0)
+        d.add(gearbox)
+        behind[name] = cw.shifts.plant_of(d, BOX).behind
+    assert behind == pytest.approx({"none": 0.2, "one": 0.21, "two": 0.81, "both": 0.01 + 0.25 * 0.27}, rel=1e-12)
+
+
 def test_what_is_given_by_mistake_is_named() -> None:
     """The box by its name, the engine by its name, a throttle that is none; a number and a Driveline are welcome."""
     model = car(BOX, "3")
@@ -147,10 +169,34 @@ def test_what_is_given_by_mistake_is_named() -> None:
     assert drive(sim, control, 0.1, throttle=0.3, sensed=sensed)["combustion.throttle"][-1] == 0.3
     wrong = {
         "box is 'zf-8hp70': give a cw.Gearbox": lambda: cw.shifts.plant_of(model, "zf-8hp70"),
+        "'gbx' is not a Transmission of 'zf-8hp70'; .*there is gearbox": lambda: cw.shifts.plant_of(model, BOX, "gbx"),
+        "'gearbx' is not .*did you mean 'gearbox'": lambda: cw.shifts.plant_of(model, BOX, "gearbx"),
+        "cw.shifts.plant_of: 1 problem\n  box is missing": lambda: cw.shifts.plant_of(model),
+        "cw.shifts.ShiftController\\(\\): 1 problem\n  plant is missing": lambda: cw.shifts.ShiftController(BOX),
         "plant is <Driveline": lambda: cw.shifts.ShiftController(BOX, model),
         "engine is 'engine': give the cw.Engine": lambda: cw.shifts.EngineSource.of("engine"),
         "throttle is \\[0.3\\]: give a number from 0 to 1": lambda: drive(
             sim, control, 0.2, throttle=[0.3], sensed=sensed
+        ),
+        "throttle is 30: give a number from 0 to 1, down to -1": lambda: drive(
+            sim, control, 0.2, throttle=30, sensed=sensed
+        ),
+        "throttle is nan": lambda: drive(sim, control, 0.2, throttle=float("nan"), sensed=sensed),
+        "throttle returned None at 0.1 s: give a number": lambda: drive(
+            sim, control, 0.2, throttle=lambda _: None, sensed=sensed
+        ),
+        "throttle returned 1.5 at 0.1 s": lambda: drive(sim, control, 0.2, throttle=lambda _: 1.5, sensed=sensed),
+        "until is nan s": lambda: drive(sim, control, float("nan"), throttle=0.3, sensed=sensed),
+        "until is -1 s, and it is 0.1 s": lambda: drive(sim, control, -1.0, throttle=0.3, sensed=sensed),
+        "until is '1 s'": lambda: drive(sim, control, "1 s", throttle=0.3, sensed=sensed),
+        "period is 0.0: give a time above 0 s": lambda: drive(
+            sim, control, 0.2, throttle=0.3, sensed=sensed, period=0.0
+        ),
+        "period is '10 ms'": lambda: drive(sim, control, 0.2, throttle=0.3, sensed=sensed, period="10 ms"),
+        "resting is nan": lambda: drive(sim, control, 0.2, throttle=0.3, sensed=sensed, resting=float("nan")),
+        "also is {}: give a function": lambda: drive(sim, control, 0.2, throttle=0.3, sensed=sensed, also={}),
+        "what also returned is None: give a function": lambda: drive(
+            sim, control, 0.2, throttle=0.3, sensed=sensed, also=lambda time, sim: None
         ),
         "throttle is missing": lambda: drive(sim, control, 0.2, sensed=sensed),
         "sim is <Driveline": lambda: drive(model, control, 0.2, throttle=0.3),

@@ -84,11 +84,11 @@ def explained_methods(call: str) -> Callable[[T], T]:
     return wrap
 
 
-def explain(cls: Any) -> None:
-    """The same for the constructor of a declaration."""
+def explain(cls: Any, within: str = "cw") -> None:
+    """The same for the constructor of a declaration, or of another class of a module."""
     if getattr(cls.__init__, "__module__", "") == dataclass.__module__:
         # which asks for this where a call does not fit, and costs nothing where it does
-        cls._explained = staticmethod(_explained)
+        cls._explained = staticmethod(functools.partial(_explained, within=within))
         return
     made = cls.__init__
 
@@ -97,17 +97,17 @@ def explain(cls: Any) -> None:
         try:
             made(self, *args, **named)
         except TypeError:
-            _explained(cls, args, named)
+            _explained(cls, args, named, within)
             raise
 
     cls.__init__ = construct
 
 
-def _explained(cls: Any, args: tuple[Any, ...], named: Mapping[str, Any]) -> None:
+def _explained(cls: Any, args: tuple[Any, ...], named: Mapping[str, Any], within: str = "cw") -> None:
     """A UseError that names every mistake of a call, if there is any."""
     problems = list(_problems(cls, args, named, _meanings(cls)))
     if problems:
-        raise UseError(f"cw.{cls.__name__}({_name(args, named)})", problems) from None
+        raise UseError(f"{within}.{cls.__name__}({_name(args, named)})", problems) from None
 
 
 def _name(args: tuple[Any, ...], named: Mapping[str, Any]) -> str:

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, ClassVar
 from clutchwork.base.errors import UseError, expect
 from clutchwork.base.frozen import Frozen
 from clutchwork.base.quote import listed, quote
+from clutchwork.declare.calls import explain
 from clutchwork.gearbox.gearbox import Gearbox
 from clutchwork.shifts.actuation import Actuation
 from clutchwork.shifts.actuators import Learnt
@@ -324,3 +325,6 @@ class ShiftController:
         self.records[-1].end, self.records[-1].problem = time, problem
         self._course, self._ended = None, time
         self._left = []
+
+
+explain(ShiftController, "cw.shifts")

@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
+from math import inf, isfinite
 from numbers import Real
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, SupportsFloat
 
 from clutchwork.base.classes import dataclass
 from clutchwork.base.errors import UseError, expect
@@ -22,6 +23,9 @@ if TYPE_CHECKING:
 Controller = ShiftController | HybridController
 # what else is set at a time [s]: values by signal
 Also = Callable[[float, Simulator], Mapping[str, float]]
+CALL, ROUND_OFF = "cw.shifts.drive", 1e-9  # s
+PEDAL = "give a number from 0 to 1, down to -1 where machines brake"
+ALSO = "give a function of time and Simulator that returns values by signal, such as {'brake.torque': 100.0}"
 
 
 @dataclass(frozen=True)
@@ -90,7 +94,30 @@ class _SensorReader:
         return Measured(first, second, total, throttle, slips, sleeves, **given)
 
 
-@explained("cw.shifts.drive", throttle="0.3", control="control", sim="sim", until="10.0")
+def _check_times(begin: float, until: float, steps: Mapping[str, float]) -> None:
+    """UseError for an end that is none or is over, and for steps that do not go on."""
+    expect(CALL, "until", until, Real, "give a time in s")
+    if not isfinite(until) or until < begin - ROUND_OFF:
+        raise UseError(CALL, [f"until is {until:g} s, and it is {begin:g} s: give a time that comes, in s"])
+    for name, value in steps.items():
+        if not isinstance(value, Real) or not 0.0 < value < inf:
+            raise UseError(CALL, [f"{name} is {quote(value)}: give a time above 0 s, such as 0.01"])
+
+
+def _is_pedal(value: object) -> bool:
+    # np.where makes arrays of one number
+    return isinstance(value, SupportsFloat) and not getattr(value, "ndim", 0) and -1.0 <= float(value) <= 1.0
+
+
+def _given(throttle: Callable[[float], float] | float, time: float) -> float:
+    """The pedal at a time; UseError where a function returns none."""
+    value = throttle(time) if callable(throttle) else throttle
+    if not _is_pedal(value):
+        raise UseError(CALL, [f"throttle returned {quote(value)} at {time:g} s: {PEDAL}"])
+    return value
+
+
+@explained(CALL, throttle="0.3", control="control", sim="sim", until="10.0")
 def drive(
     sim: Simulator,
     control: Controller,
@@ -106,32 +133,34 @@ def drive(
     """Run a driveline under the controller of its gearbox, up to a time [s]; the trajectory up to there.
 
     Use it for shifts on a schedule or by request: `control.records` has them afterwards. It can be called again to go
-    on. UseError where nothing says the torque at the input, or a dual-clutch gearbox has no `sources`.
+    on. UseError where nothing says the torque at the input, a dual-clutch gearbox has no `sources`, or a pedal is
+    beyond -1 to 1.
 
     Parameters: throttle, of the driver, 0 to 1, below 0 where machines brake, a number, a function of time or a signal
     such as "driver.throttle"; sensed, signals that are read; also, what else is set, such as brakes; sources, motors
     and engine that give what a shift asks for, the first one first; period, from one call of the controller to the next
     while it shifts [s]; resting, the same between shifts.
     """
-    expect("cw.shifts.drive", "sim", sim, Simulator, "give a cw.Simulator of the driveline")
-    expect("cw.shifts.drive", "control", control, Controller, "give a ShiftController or a HybridController")
-    expect("cw.shifts.drive", "until", until, Real, "give a time in s")
-    expect("cw.shifts.drive", "sensed", sensed or Sensed(), Sensed, "give cw.shifts.Sensed(torque=...)")
-    if not isinstance(throttle, Real | str) and not callable(throttle):
-        remedy = "give a number from 0 to 1, a function of time, or a signal"
-        raise UseError("cw.shifts.drive", [f"throttle is {quote(throttle)}: {remedy}"])
+    expect(CALL, "sim", sim, Simulator, "give a cw.Simulator of the driveline")
+    expect(CALL, "control", control, Controller, "give a ShiftController or a HybridController")
+    expect(CALL, "sensed", sensed or Sensed(), Sensed, "give cw.shifts.Sensed(torque=...)")
+    _check_times(sim.time, until, {"period": period, "resting": resting})
+    if not isinstance(throttle, str) and not callable(throttle) and not _is_pedal(throttle):
+        raise UseError(CALL, [f"throttle is {quote(throttle)}: {PEDAL}, a function of time, or a signal"])
+    if also is not None and not callable(also):
+        raise UseError(CALL, [f"also is {quote(also)}: {ALSO}"])
     share, sensed = TorqueShare(sources), sensed or Sensed()
     asks = control.asks or ("" if control.always or sensed.torque else "nothing says the torque at the input")
     if control.always and sources:
-        raise UseError("cw.shifts.drive", ["this controller commands engine and machines itself: leave sources out"])
+        raise UseError(CALL, ["this controller commands engine and machines itself: leave sources out"])
     if asks and not sources:
-        raise UseError("cw.shifts.drive", [f"{asks}: give sources, such as cw.shifts.EngineSource.of(engine)"])
+        raise UseError(CALL, [f"{asks}: give sources, such as cw.shifts.EngineSource.of(engine)"])
+    if isinstance(control, HybridController) and control.settings.electric and not sensed.charge:
+        raise UseError(CALL, ['electric of the settings needs the charge: give Sensed(charge="battery.charge")'])
     read, set_, last = _SensorReader(sensed, sim, control, share), dict[str, float](), sim.time
-    while sim.time < until - 1e-9:
+    while sim.time < until - ROUND_OFF:
         time = sim.time
-        pedal = float(
-            sim[throttle] if isinstance(throttle, str) else throttle(time) if callable(throttle) else throttle
-        )
+        pedal = float(sim[throttle] if isinstance(throttle, str) else _given(throttle, time))
         wanted = {} if set_ else control.commands
         now = read(pedal)
         wanted |= control.step(time, now)
@@ -142,7 +171,9 @@ def drive(
         if sensed.throttle:
             wanted[sensed.throttle] = left
         if also is not None:
-            wanted |= also(time, sim)
+            beside = also(time, sim)
+            expect(CALL, f"at {time:g} s, what also returned", beside, Mapping, ALSO)
+            wanted |= beside
         changed = {name: value for name, value in wanted.items() if set_.get(name) != value}
         if changed:
             sim.set(changed)

@@ -4,25 +4,26 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from dataclasses import field
-from math import inf
-from typing import TYPE_CHECKING
+from itertools import pairwise
+from math import inf, isfinite
+from numbers import Real
+from typing import Any
 
 from clutchwork.base.classes import dataclass
-from clutchwork.base.errors import UseError, near
+from clutchwork.base.errors import UseError, expect, near
 from clutchwork.base.quote import listed, quote
+from clutchwork.declare.calls import explain
+from clutchwork.gearbox.gearbox import Gearbox
 from clutchwork.gearbox.motion import SPLIT
 from clutchwork.shifts.actuation import Actuation
 from clutchwork.shifts.exchange import ratio_of
 from clutchwork.shifts.lines import Line, at
+from clutchwork.shifts.plant import Plant
 from clutchwork.shifts.profile import Trend
 from clutchwork.shifts.record import Measured, ShiftRecord
 from clutchwork.shifts.settings import ShiftSettings
 from clutchwork.shifts.split_motion import SplitMotion, split_motion
-
-if TYPE_CHECKING:
-    from clutchwork.gearbox.gearbox import Gearbox
-    from clutchwork.shifts.plant import Plant
-    from clutchwork.shifts.torque_sources import EngineSource, TorqueSource
+from clutchwork.shifts.torque_sources import EngineSource, TorqueSource
 
 # directions of the driver; share of its idle speed from which on an engine fires, and how far ahead it is led [rad/s]
 FORWARD, REVERSE, FIRES, SOFTLY = "D", "R", 0.8, 50.0
@@ -31,7 +32,17 @@ SYNCHRONISE = 10.0
 # output speed below which no ratio is looked at, and machines brake less [rad/s]
 # and share of the ratio between two modes that is hysteresis
 SLOW, HYSTERESIS = 5.0, 0.05
+# of the charge, that is left for starting an engine which stands
+RESERVE = 0.05
 CALL = "cw.shifts.HybridController"
+# what settings must be
+BOUNDS = {
+    "charge": "give a number from 0 to 1",
+    "charge_power": "give a power in W, 0 or above",
+    "electric": "give a power in W, 0 or above",
+    "follow": "give a rate in 1/s, above 0",
+}
+POINTS = "give points of two numbers, the first ones rising, such as [(0.0, 900.0), (300.0, 450.0)]"
 
 
 @dataclass(frozen=True)
@@ -40,9 +51,9 @@ class HybridSettings:
 
     Parameters: output_torque, of the output at full pedal over its speed, points (rad/s, N m); engine_speed, of the
     engine over its power, points (W, rad/s); charge, of the battery that is aimed at; charge_power [W], for all that it
-    lacks; electric [W], power below which the engine stands, 0: it never does; limits, of the power that the battery
-    takes and gives at a charge [W], such as `battery.limits`; follow [1/s], at which the engine comes to its speed;
-    shift, settings of the elements.
+    lacks; electric [W], power below which the engine stands while the battery has what drives, 0: it never does;
+    limits, of the power that the battery takes and gives at a charge [W], such as `battery.limits`; follow [1/s], at
+    which the engine comes to its speed; shift, settings of the elements.
     """
 
     output_torque: Line
@@ -53,6 +64,35 @@ class HybridSettings:
     limits: Callable[[float], tuple[float, float]] = field(default=lambda _: (-inf, inf))
     follow: float = 4.0
     shift: ShiftSettings = field(default_factory=ShiftSettings)
+
+    def __post_init__(self) -> None:
+        """Numbers within their bounds, lines with points; all mistakes at once."""
+        bad = [
+            f"{name} is {quote(getattr(self, name))}: {bound}" for name, bound in BOUNDS.items() if not self._is(name)
+        ]
+        lines = {"output_torque": self.output_torque, "engine_speed": self.engine_speed}
+        bad += [f"{name} is {quote(line)}: {POINTS}" for name, line in lines.items() if not _is_line(line)]
+        if not callable(self.limits):
+            bad.append(f"limits is {quote(self.limits)}: give a function of the charge, such as battery.limits")
+        if not isinstance(self.shift, ShiftSettings):
+            bad.append(f"shift is {quote(self.shift)}: give cw.shifts.ShiftSettings(...)")
+        if bad:
+            raise UseError("cw.shifts.HybridSettings", bad)
+
+    def _is(self, name: str) -> bool:
+        value, most = getattr(self, name), 1.0 if name == "charge" else inf
+        number = isinstance(value, Real) and isfinite(value) and 0.0 <= float(value) <= most
+        return number and bool(value or name != "follow")
+
+
+def _is_line(line: Any) -> bool:
+    """Whether it has points of two numbers, in rising order."""
+    try:
+        points = [(float(x), float(y)) for x, y in line]
+    except (TypeError, ValueError):
+        return False
+    rises = all(one[0] < two[0] for one, two in pairwise(points))
+    return bool(points) and rises and all(isfinite(x) and isfinite(y) for x, y in points)
 
 
 class HybridController:
@@ -88,6 +128,13 @@ class HybridController:
         prefix: str = "gearbox",
     ) -> None:
         """A controller at the start of a run."""
+        expect(CALL, "box", box, Gearbox, "give a cw.Gearbox, such as cw.Gearbox.load('toyota-p410')")
+        expect(CALL, "plant", plant, Plant, "give cw.shifts.plant_of(driveline, box)")
+        expect(CALL, "engine", engine, EngineSource | TorqueSource, "give cw.shifts.EngineSource.of(engine)")
+        expect(CALL, "settings", settings, HybridSettings, "give cw.shifts.HybridSettings(...)")
+        expect(CALL, "machines", machines, Mapping, "give a cw.shifts.TorqueSource by the name of each machine")
+        for name, source in machines.items():
+            expect(CALL, f"machine {quote(name)}", source, TorqueSource, "give a cw.shifts.TorqueSource")
         self.modes = [row for row in box.gears if box.combination(box.closed_in(row)).kind == SPLIT]
         missing = [name for name in box.machines if name not in machines]
         if missing or len(box.machines) != 2:
@@ -146,14 +193,12 @@ class HybridController:
         with_, speeds = self.settings, (now.input_speed, now.output_speed)
         sense = -1.0 if self.direction == REVERSE else 1.0
         wanted = now.throttle * at(with_.output_torque, abs(speeds[1]))
-        if wanted < 0.0:
-            # machines brake to rest, and not beyond
-            wanted *= min(1.0, max(0.0, sense * speeds[1] / SLOW))
-        wanted *= sense
+        # machines brake to rest, and not beyond, whichever way it rolls
+        wanted *= sense if wanted >= 0.0 else min(1.0, max(-1.0, speeds[1] / SLOW))
         low, high = with_.limits(charge)
         given = min(max((charge - with_.charge) * with_.charge_power, low), high)
         power = max(0.0, wanted * speeds[1] - given)
-        self.stands = power < (1.0 + HYSTERESIS * self.stands) * with_.electric
+        self.stands = self._may_stand(power, max(0.0, wanted * speeds[1]), charge)
         target = 0.0 if self.stands else at(with_.engine_speed, power)
         if with_.electric:
             # it is turned softly
@@ -172,6 +217,15 @@ class HybridController:
         self._shift(time, now)
         made = self._do.outputs(period) | {self.engine.signal: self.engine.command(torque, speeds[0])}
         return made | {self.machines[name].signal: value for name, value in machines.items()}
+
+    def _may_stand(self, power: float, driving: float, charge: float) -> bool:
+        """Whether little power is wanted of the engine, and the battery has what drives [W] without it."""
+        with_, stands = self.settings, self.stands
+        # an engine that runs comes to rest where there is more to spare
+        left = charge - (1.0 if stands else 2.0) * RESERVE
+        spare = with_.limits(left)[1] if left > 0.0 else 0.0
+        enough = driving < (1.0 - HYSTERESIS * (not stands)) * spare
+        return enough and power < (1.0 + HYSTERESIS * stands) * with_.electric
 
     def _torques(
         self, time: float, target: float, given: tuple[float, float], speeds: tuple[float, float], charge: float
@@ -243,3 +297,7 @@ class HybridController:
     def _next(self, phase: str, time: float) -> None:
         self.phase, self._since = phase, time
         self.records[-1].phases.append((time, phase))
+
+
+explain(HybridSettings, "cw.shifts")
+explain(HybridController, "cw.shifts")

@@ -9,9 +9,10 @@ import numpy as np
 
 from clutchwork.assembly.wiring import HOUSING, wiring
 from clutchwork.base.classes import dataclass
-from clutchwork.base.errors import UseError, expect
+from clutchwork.base.errors import UseError, expect, near
 from clutchwork.base.frozen import Frozen
-from clutchwork.base.quote import listed
+from clutchwork.base.quote import listed, quote
+from clutchwork.declare.calls import explained
 from clutchwork.gearbox.gearbox import Gearbox
 from clutchwork.run.simulation import Assembles, model_of
 from clutchwork.shifts.actuators import ElementActuator
@@ -19,8 +20,11 @@ from clutchwork.shifts.fill_test import FULL, fill_test
 from clutchwork.stepping.simulator import Simulator
 
 if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
     from clutchwork.assembly.system import System
 
+CALL = "cw.shifts.plant_of"
 # Pa, that stands for an element behind a piston which is filled and carries nothing; 0 lets it go
 LEAST = 1.0
 # Pa, at which capacities are read
@@ -39,7 +43,8 @@ class Plant:
         touch: pressure at which each element touches [Pa]
         inertias: of each member with all that is fixed to it [kg m2]; the output is left out
         actuators: what stands before elements that are not pressed directly
-        behind: inertia that a converter, springs or clutches join to the input, such as that of an engine [kg m2]
+        behind: inertia that a converter, springs or clutches join to the input, such as that of an engine, as the
+        input sees it [kg m2]
     """
 
     capacity: Mapping[str, float]
@@ -49,22 +54,28 @@ class Plant:
     behind: float = 0.0
 
 
+@explained(CALL, system="driveline", box="box")
 def plant_of(system: Assembles | System, box: Gearbox, prefix: str = "gearbox") -> Plant:
     """Measure capacities and inertias of a gearbox in a Driveline or its System.
 
     Use it to give a `ShiftController` what a control unit is calibrated with. Capacities are read at two pressures, so
     they are those of any element whose capacity is linear in its pressure; valves and pistons before it are measured by
-    `cw.shifts.fill_test`. UseError for elements that no pressure closes.
+    `cw.shifts.fill_test`. UseError for elements that no pressure closes, or a prefix that names no Transmission.
     """
-    expect("cw.shifts.plant_of", "box", box, Gearbox, "give a cw.Gearbox, such as cw.Gearbox.load('zf-8hp70')")
-    system = model_of("cw.shifts.plant_of", system)
+    expect(CALL, "box", box, Gearbox, "give a cw.Gearbox, such as cw.Gearbox.load('zf-8hp70')")
+    system = model_of(CALL, system)
+    inner = f".{box.input}"
+    known = [node.name.removesuffix(inner) for node in system.nodes if node.name.endswith(inner)]
+    if prefix not in known:
+        remedy = near(prefix, known, f"there is {listed(known)}" if known else "add one to the driveline")
+        raise UseError(CALL, [f"{quote(prefix)} is not a Transmission of {quote(box.name)}{remedy}"])
     actuators = fill_test(system, box, prefix)
     names = [e.name for e in box.elements if e.kind in ("clutch", "brake") and e.name not in actuators]
     low, high = (_capacities(system, prefix, names, pressure) for pressure in (LOW, HIGH))
     slope = {name: (high[name] - low[name]) / (HIGH - LOW) for name in names}
     flat = [name for name in names if slope[name] <= 0.0]
     if flat:
-        raise UseError("cw.shifts.plant_of", [f"pressure does nothing for {listed(flat)}; give them a gain"])
+        raise UseError(CALL, [f"pressure does nothing for {listed(flat)}; give them a gain"])
     sliding = _sliding(system, prefix)
     touch = {name: max(0.0, LOW - low[name] / slope[name]) for name in names} | dict.fromkeys(actuators, LEAST)
     capacity = {name: slope[name] * sliding.get(name, 1.0) for name in names}
@@ -92,33 +103,46 @@ def _sliding(system: System, prefix: str) -> dict[str, float]:
 
 def _inertias(system: System, box: Gearbox, prefix: str) -> dict[str, float]:
     """Inertia of each member and of what gears fix to it."""
-    rows = np.hstack([system.basis, system.basis_prescribed])
-    nodes = [node.name for node in system.nodes]
-    inertia = np.array([node.inertia for node in wiring(system).nodes])
+    nodes, rows = wiring(system).nodes, _rows(system)
+    names = [node.name for node in nodes]
     found = dict.fromkeys((member for member in box.members if member != box.output), 0.0)
     left = set(range(len(nodes)))
     for member in found:
-        own = rows[nodes.index(f"{prefix}.{member}")]
-        size = float(own @ own)
-        for node in sorted(left):
-            ratio = float(rows[node] @ own) / size if size else 0.0
-            if ratio and np.allclose(rows[node], ratio * own, rtol=0.0, atol=ROUND_OFF):
-                found[member] += float(inertia[node]) * ratio**2
+        for node, ratio in _fixed(rows, names.index(f"{prefix}.{member}")).items():
+            if node in left:
+                found[member] += nodes[node].inertia * ratio**2
                 left.discard(node)
     return found
 
 
+def _rows(system: System) -> NDArray[np.float64]:
+    """Speed of each node over those that are free or prescribed."""
+    return np.hstack([system.basis, system.basis_prescribed])
+
+
+def _fixed(rows: NDArray[np.float64], node: int) -> dict[int, float]:
+    """Speed of each node that gears fix to one, over that of this one; empty where it stands still."""
+    own = rows[node]
+    ratios = rows @ own / (float(own @ own) or 1.0)
+    alike = np.max(np.abs(rows - np.outer(ratios, own)), axis=1, initial=0.0) <= ROUND_OFF
+    return {int(k): float(ratios[k]) for k in np.flatnonzero(alike & (ratios != 0.0))}
+
+
 def _behind(system: System, box: Gearbox, prefix: str) -> float:
-    """Inertia of what elements outside of the box join to its input, without what turns with that."""
-    parts, joins = wiring(system), dict[int, set[int]]()
+    """Inertia of what elements outside of the box join to its input, seen there, without what is fixed to it."""
+    parts, rows, joins = wiring(system), _rows(system), dict[int, dict[int, float]]()
     for branch in (*parts.elements, *parts.contacts):
         if not branch.name.startswith(f"{prefix}."):
-            joins.setdefault(id(branch.component), set()).update(k for k in branch.direction if k != HOUSING)
-    rows = np.hstack([system.basis, system.basis_prescribed])
-    own = rows[[node.name for node in parts.nodes].index(f"{prefix}.{box.input}")]
-    fixed = {k for k, row in enumerate(rows) if row.any() and np.linalg.matrix_rank(np.array([own, row])) == 1}
-    joined, fresh = set(fixed), set(fixed)
+            ends = joins.setdefault(id(branch.component), {})
+            ends.update({k: abs(rate) for k, rate in branch.direction.items() if k != HOUSING and rate})
+    own = _fixed(rows, [node.name for node in parts.nodes].index(f"{prefix}.{box.input}"))
+    # speed of each node over that of the input, with all that joins them stiff
+    speeds, fresh = dict(own), list(own)
     while fresh:
-        fresh = {k for nodes in joins.values() if nodes & fresh for k in nodes} - joined
-        joined |= fresh
-    return float(sum(parts.nodes[k].inertia for k in joined - fixed))
+        node = fresh.pop()
+        for ends in joins.values():
+            for other in [k for k in ends if node in ends and k not in speeds]:
+                joined = {k: speeds[node] * ends[node] / ends[other] * r for k, r in _fixed(rows, other).items()}
+                speeds |= joined
+                fresh += joined
+    return float(sum(parts.nodes[k].inertia * speed**2 for k, speed in speeds.items() if k not in own))

@@ -216,11 +216,13 @@ class Together {
   bool is_left_alone(const StepSize<double>& one) const {
     const Workspace<double>& run = one.ws_;
     const bool others = run.sys.prescribed + run.sys.supplies + run.sys.meters > 0;
-    if (has_angles(run) || (has_work(run) && (others || run.out.read.place != read_.place))) return true;
+    if (has_angles(run) ||
+        (has_work(run) && (others || (run.out.read.place != read_.place || run.out.read.n != read_.n))))
+      return true;
     if (one.sink_.steps != parts_) return true;
     if (parts_ == 0) return one.has_rows(1);
     // rows at knots are compared with those behind them
-    return !ws_.out.rows || one.cut_ || run.out.inside.place != inside_.place ||
+    return !ws_.out.rows || one.cut_ || run.out.inside.place != inside_.place || run.out.inside.n != inside_.n ||
            one.reach_ < shortest_with_rows * (1 + abs(one.end_of_step()));
   }
   // far above what the time can tell apart

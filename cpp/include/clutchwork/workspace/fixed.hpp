@@ -13,11 +13,17 @@ struct Fixed {
   double origin = 0;         ///< [s] where the present grid of steps begins
   std::int64_t count = 0;    ///< steps on it
   std::int64_t impacts = 0;  ///< since the last of them
+  std::int64_t fresh = 0;    ///< no step was taken since the modes were decided
   T *gain = nullptr, *state_gain = nullptr, *given_gain = nullptr;  ///< change of speeds, states, prescribed speeds
   T* given = nullptr;                                               ///< prescribed speeds now
   T* kept = nullptr;    ///< of each direction: slope of its torque that is in the matrix [N m s/rad]
   T* torque = nullptr;  ///< of each direction: mean over the last step
   T* held = nullptr;    ///< of each contact: static torque in it, against slip backward, then forward
+
+  // what a step changes beside its results, as it was before it
+  std::int64_t* segment = nullptr;  ///< of each signal: the segment that it is on
+  int *fault = nullptr, failed = -1, events = 0;
+  std::int64_t counted = 0;
 
   // made anew where it is not there
   bool ready = false;         ///< the branches are packed
@@ -48,8 +54,9 @@ struct Fixed {
 
   // of each load: its impulse by changes of speeds, of prescribed ones, by impulses of contacts; without these
   T *load_by_speed = nullptr, *load_by_given = nullptr, *load_reach = nullptr, *load_free = nullptr;
-  T *load_matrix = nullptr, *load_off = nullptr;   ///< of those at a bound: their system, what they are off
-  int *follower = nullptr, *load_pivot = nullptr;  ///< which these are; order of the rows
+  T *load_matrix = nullptr, *load_off = nullptr;  ///< of those at a bound: their system, what they are off
+  int *follower = nullptr, *load_line = nullptr;  ///< which these are; lines of all bounds in the last round
+  double load_miss = 0;                           ///< the largest part of itself that an impulse is off its bound
 
   template <class P, class A>
   static void lay_out(P& p, A& a, const Sizes& n) {
@@ -71,7 +78,7 @@ struct Fixed {
     const auto nl = has ? n.loads : 0;
     a.scratch(p.load_by_speed, nl * nv), a.scratch(p.load_by_given, nl * np), a.scratch(p.load_reach, nl * nc);
     a.scratch(p.load_free, nl), a.scratch(p.load_matrix, nl * nl), a.scratch(p.load_off, nl);
-    a.take(p.follower, nl), a.take(p.load_pivot, nl);
+    a.take(p.follower, nl), a.take(p.load_line, 2 * nl), a.take(p.segment, has ? n.signals : 0), a.take(p.fault, nc);
     a.take(p.side, nc), a.take(p.list, nc), a.take(p.box, nc), a.take(p.mode, nc);
   }
 };

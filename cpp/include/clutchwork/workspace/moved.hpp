@@ -59,7 +59,7 @@ struct Moved {
     a.scratch(p.row, s.row), a.scratch(p.slopes, SlopeRow::count * (s.speeds + s.states));
     const auto unknowns = s.full ? s.speeds + s.states : 0;
     Jacobian<double>::lay_out(p.other, a, s), a.scratch(p.other_whole, unknowns * unknowns);
-    a.scratch(p.event, EventBuffer::room + 2 * s.contacts), a.scratch(p.graze, room);
+    a.scratch(p.event, EventBuffer::room + 3 * s.contacts), a.scratch(p.graze, room);
   }
 };
 

@@ -127,7 +127,7 @@ struct EventBuffer {
   template <class P, class A>
   static void lay_out(P& p, A& a, const Sizes& n) {
     a.keep(p.crowd, n.directions + n.signals + n.processes + n.flows, 0, 1 << 30),
-        a.take(p.at, event_size * (room + 2 * n.contacts));
+        a.take(p.at, event_size * (room + 3 * n.contacts));
   }
 };
 

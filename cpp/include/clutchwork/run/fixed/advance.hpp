@@ -29,16 +29,23 @@ inline Status emit_step(Run& ws, const Look& look, double end, Sink& sink) {
   return Status::running;
 }
 
+/// One row of the present.
+inline Status show_present(Run& ws, Sink& sink) {
+  Fixed<double>& f = ws.fixed;
+  for (int d = 0; d < ws.n_directions; ++d) f.start_rate[d] = rate_row(ws.sys, d).times(ws.v), f.rate_change[d] = 0;
+  const Look look{ws.time, 0, f.gain, f.given_gain, f.state_gain, f.torque};
+  double* row = sink.rows + ws.row.size * sink.at;
+  fill_row(ws, look, 0, f.before, ws.contact.mode, row);
+  if (!is_finite(ws, row)) return Status::not_finite;
+  if (sink.steps > 0) sink.times[sink.at] = ws.time;
+  ++sink.at;
+  return Status::running;
+}
+
 /// Rows that are wanted at the present time, the end of the last step.
 inline Status emit_present(Run& ws, Sink& sink) {
-  Fixed<double>& f = ws.fixed;
   while (sink.steps == 0 && sink.at < sink.count && sink.times[sink.at] <= ws.time) {
-    for (int d = 0; d < ws.n_directions; ++d) f.start_rate[d] = rate_row(ws.sys, d).times(ws.v), f.rate_change[d] = 0;
-    const Look look{ws.time, 0, f.gain, f.given_gain, f.state_gain, f.torque};
-    double* row = sink.rows + ws.row.size * sink.at;
-    fill_row(ws, look, 0, f.before, ws.contact.mode, row);
-    if (!is_finite(ws, row)) return Status::not_finite;
-    ++sink.at;
+    if (show_present(ws, sink) != Status::running) return Status::not_finite;
   }
   return Status::running;
 }
@@ -49,12 +56,17 @@ inline Status begin(Run& ws, Sink& sink) {
   if (status != Status::done) return status;
   Fixed<double>& f = ws.fixed;
   f.time = f.origin = ws.time;
-  f.before = 0, f.count = f.impacts = 0;
+  f.before = 0, f.count = f.impacts = 0, f.fresh = 1;
   for (int p = 0; p < ws.sys.prescribed; ++p) f.given[p] = ws.in.prescribed[p];
   for (int i = 0; i < ws.sys.speeds; ++i) f.gain[i] = 0;
   for (int i = 0; i < ws.sys.states; ++i) f.state_gain[i] = 0;
   for (int p = 0; p < ws.sys.prescribed; ++p) f.given_gain[p] = 0;
   for (int d = 0; d < ws.n_directions; ++d) f.kept[d] = f.torque[d] = 0;
+  // what follows loads begins with them
+  for (int l = 0; l < ws.sys.loads; ++l) {
+    const int c = int(ws.sys.load_contact[l]);
+    f.torque[ws.sys.elements + c] = torque_after(ws, c);
+  }
   for (int i = 0; i < 2 * ws.sys.contacts; ++i) f.held[i] = 0;
   f.length = 0, f.ready = false;
   return Status::running;
@@ -66,7 +78,7 @@ inline Status make_ready(Run& ws, Sink& sink) {
   if (!f.ready && !takes(ws)) return Status::refused;
   // its first row is there once, where rows are those of steps
   const bool begun = ws.started && f.time == ws.time;
-  if (!begun || (f.before == 0 && sink.steps == 0)) {
+  if (!begun || (f.fresh != 0 && sink.steps == 0)) {
     const Status status = begin(ws, sink);
     if (status != Status::running) return status;
   }
@@ -94,20 +106,42 @@ inline Status finish_step(Run& ws, double h, double end, Sink& sink) {
   cross_pieces(ws);
   for (int d = 0; d < ws.n_directions; ++d) f.torque[d] = f.mean[d];
   for (int i = 0; i < 2 * ws.sys.contacts; ++i) f.held[i] = f.limit[i];
-  ws.time = f.time = end;
+  ws.time = f.time = end, f.fresh = 0;
   return Status::running;
 }
 
-/// Up to a meeting inside the step that was made, and the impact there.
+/// The part of a step that ends where a stop is met: its motion is one of its own, and meets the end beside where the
+/// whole step did. A secant from there. `running`: the part is made.
+inline Status make_part(Run& ws, const Meeting& met, double h, double& part) {
+  const double start = ws.time;
+  double before = h, gap_before = gap_behind(ws, met.contact, met.side, h);
+  for (int round = 0; round < most_tries; ++round) {
+    rewind(ws);
+    const Status status = make_step(ws, start, part, start + part);
+    if (status != Status::running) return status;
+    const double gap = gap_behind(ws, met.contact, met.side, part);
+    if (abs(gap) <= stop_noise(ws, met.contact) || round + 1 == most_tries) break;
+    const double next = part - gap * (part - before) / (gap - gap_before);
+    if (!(next > 0) || next > h || next == part) break;
+    before = part, gap_before = gap, part = next;
+  }
+  return Status::running;
+}
+
+/// Up to a meeting inside the step that was made, which is none then, and the impact there.
 inline Status take_impact(Run& ws, const Meeting& met, double h, Sink& sink) {
-  const double start = ws.time, part = met.share * h;
+  const double start = ws.time;
+  double part = met.share * h;
   if (part > 1e-9 * ws.options.step) {
-    const Status made = make_step(ws, start, part, start + part);
+    const Status made = make_part(ws, met, h, part);
     if (made != Status::running) return made;
     const Status shown = finish_step(ws, part, start + part, sink);
     if (shown != Status::running) return shown;
+  } else {
+    rewind(ws);
   }
-  return strike(ws, met);
+  const Status status = strike(ws, met);
+  return status == Status::running && sink.steps > 0 ? show_present(ws, sink) : status;
 }
 
 /// One step onto the grid, onto the end where that comes before, or up to an impact. `running`: the run goes on.
@@ -116,9 +150,10 @@ inline Status take_step(Run& ws, double t_end, Sink& sink) {
   const double step = ws.options.step, grid = f.origin + double(f.count + 1) * step;
   const bool last = grid > t_end - 1e-9 * step, cut = grid > t_end + 1e-9 * step;
   const double end = last ? t_end : grid, h = cut || f.impacts > 0 ? end - ws.time : step;
+  keep_outside(ws);
   Status status = make_step(ws, ws.time, h, end);
   if (status != Status::running) return status;
-  const Meeting met = first_meeting(ws, h);
+  const Meeting met = first_meeting(ws, h, slip_tolerance(ws));
   const bool strikes = met.contact >= 0 && f.impacts < most_bounces + ws.sys.contacts;
   status = strikes ? take_impact(ws, met, h, sink) : finish_step(ws, h, end, sink);
   // what an impact leaves of a step may be none
@@ -126,7 +161,7 @@ inline Status take_step(Run& ws, double t_end, Sink& sink) {
   ws.time = f.time = end;
   ++f.count, f.impacts = 0;
   if (cut) f.origin = end, f.count = 0;
-  return Status::running;
+  return strikes ? emit_present(ws, sink) : Status::running;
 }
 
 }  // namespace clutchwork::fixed

@@ -61,6 +61,7 @@ inline void begin_loads(Run& ws, double h) {
   for (int l = 0; l < ws.sys.loads; ++l) {
     const int c = int(ws.sys.load_contact[l]), mode = ws.contact.mode[c];
     const double load = load_impulse(ws, l);
+    for (int way = 0; way < 2; ++way) f.load_line[2 * l + way] = bound_at(ws, c, 2 * way - 1).line_at(load / h);
     if (mode == locked || mode == open) {
       set_bounds(ws, c, infinity, infinity, h);
     } else {
@@ -84,41 +85,29 @@ inline double answered(const Run& ws, const Boxes& p, int l, int from, int m) {
   return sum;
 }
 
-/// Gears whose friction would grow with what it drives stop for this step: the determinant of those that slip is not
-/// positive. docs/theory/load-dependent.md, rule 4
-inline bool jam_loads(Run& ws, int n, bool factored, double h) {
+/// All bounds at the loads of the solution; lists the contacts at one, in `follower`, and returns how many. Whether the
+/// solution is another one with them: `moves`.
+inline int see_bounds(Run& ws, double h, double tolerance, bool& moves) {
   Fixed<double>& f = ws.fixed;
-  bool positive = factored;
-  for (int a = 0; factored && a < n; ++a)
-    positive = positive == ((f.load_matrix[a * n + a] > 0) == (f.load_pivot[a] == a));
-  for (int a = 0; !positive && a < n; ++a) {
-    const int c = int(ws.sys.load_contact[f.follower[a]]);
-    f.box[c] = stops;
-    set_bounds(ws, c, infinity, infinity, h);
-  }
-  return !positive;
-}
-
-/// Contacts of loads that are at a bound, and what their impulses are off; all bounds at the loads of the solution.
-/// Whether it is another one with these.
-inline bool see_bounds(Run& ws, double h, double tolerance, int& n) {
-  Fixed<double>& f = ws.fixed;
-  bool moves = false;
+  int n = 0;
+  moves = false, f.load_miss = 0;
   for (int l = 0; l < ws.sys.loads; ++l) {
     const int c = int(ws.sys.load_contact[l]), side = bound_side(ws, c, tolerance);
     if (f.box[c] == stops) continue;
-    const double load = load_impulse(ws, l), x = f.impulse[c];
+    const double load = load_impulse(ws, l), x = f.impulse[c], size = abs(x) + abs(load);
     const double ahead = most_impulse(ws, c, forward, load, h), behind = most_impulse(ws, c, backward, load, h);
     set_bounds(ws, c, ahead, behind, h);
     const double wanted = side == 0 ? larger(smaller(x, behind), -ahead) : side < 0 ? -ahead : behind;
-    moves = moves || abs(wanted - x) > (side == 0 ? 1e-12 : 1e-13) * (abs(x) + abs(load));
-    if (side != 0) f.follower[n] = l, f.load_off[n++] = wanted - x;
+    moves = moves || abs(wanted - x) > (side == 0 ? 1e-12 : 1e-13) * size;
+    if (size > 0) f.load_miss = larger(f.load_miss, abs(wanted - x) / size);
+    if (side != 0) f.follower[n++] = l;
   }
-  return moves;
+  return n;
 }
 
-/// The system of the n contacts at a bound: what their impulses change of what each is off.
-inline void couple_bounds(Run& ws, const Boxes& p, double h, double tolerance, int n) {
+/// The system of the n contacts at a bound, each with its line at its load, or with that of the round before: what
+/// their impulses change of what each is off.
+inline void couple_bounds(Run& ws, const Boxes& p, double h, double tolerance, int n, bool last_lines) {
   Fixed<double>& f = ws.fixed;
   int m = 0;
   for (int c = 0; c < p.n; ++c) m += f.side[c] == 0;
@@ -129,31 +118,78 @@ inline void couple_bounds(Run& ws, const Boxes& p, double h, double tolerance, i
     for (int a = 0; a < n; ++a) {
       const int l = f.follower[a], c = int(ws.sys.load_contact[l]), side = bound_side(ws, c, tolerance);
       const Bound<double> bound = bound_at(ws, c, -side);
-      const double slope = side * bound.slope[bound.line_at(load_impulse(ws, l) / h)];
-      f.load_matrix[a * n + b] = (a == b ? 1.0 : 0.0) - slope * answered(ws, p, l, from, m);
+      const double load = load_impulse(ws, l) / h;
+      const int line = last_lines ? f.load_line[2 * l + (side < 0)] : bound.line_at(load);
+      f.load_matrix[a * n + b] = (a == b ? 1.0 : 0.0) - side * bound.slope[line] * answered(ws, p, l, from, m);
+      f.load_off[a] = side * h * bound.on(line, load) - f.impulse[c];
     }
   }
+}
+
+/// Solve it in place, in the order of the contacts. How many of them are left out, whose friction would grow with what
+/// it drives: their pivots are not positive, and their places in `follower` are negative.
+/// docs/theory/load-dependent.md, rule 4
+inline int solve_bounds(Fixed<double>& f, int n) {
+  constexpr double least = 1e-6;
+  double *m = f.load_matrix, *x = f.load_off;
+  int out = 0;
+  for (int k = 0; k < n; ++k) {
+    if (!(m[k * n + k] > least)) {
+      ++out, x[k] = 0, f.follower[k] = -1 - f.follower[k];
+      for (int j = 0; j < n; ++j) m[k * n + j] = m[j * n + k] = 0;
+      m[k * n + k] = 1;
+    }
+    for (int i = k + 1; i < n; ++i) {
+      const double share = m[i * n + k] / m[k * n + k];
+      for (int j = k; j < n; ++j) m[i * n + j] -= share * m[k * n + j];
+      x[i] -= share * x[k];
+    }
+  }
+  for (int k = n - 1; k >= 0; --k) {
+    for (int j = k + 1; j < n; ++j) x[k] -= m[k * n + j] * x[j];
+    x[k] /= m[k * n + k];
+  }
+  return out;
+}
+
+/// The bound of the contact of a load that solves its system; a gear that was left out stops for this step.
+inline void take_bound(Run& ws, int a, double h, double tolerance) {
+  Fixed<double>& f = ws.fixed;
+  const bool jams = f.follower[a] < 0;
+  const int c = int(ws.sys.load_contact[jams ? -1 - f.follower[a] : f.follower[a]]);
+  if (jams) {
+    f.box[c] = stops, f.side[c] = 0;
+    return set_bounds(ws, c, infinity, infinity, h);
+  }
+  const int side = bound_side(ws, c, tolerance);
+  const double size = larger(side * (f.impulse[c] + f.load_off[a]), 0.0);
+  if (is_rigid(ws, c)) f.lower[c] = f.upper[c] = side * size;
+  if (side < 0)
+    f.lower[c] = -size, f.kinetic[2 * c + 1] = f.limit[2 * c + 1] = size / h;
+  else
+    f.upper[c] = size, f.kinetic[2 * c] = f.limit[2 * c] = size / h;
 }
 
 /// The bounds of contacts that follow loads at the loads of the solution: exactly where these are at a bound, as long
 /// as no contact goes to another one. Whether the solution is another one with them. docs/theory/fixed-steps.md, rule 6
 inline bool follow_loads(Run& ws, const Boxes& p, double h, double tolerance) {
   Fixed<double>& f = ws.fixed;
-  int n = 0;
-  if (!see_bounds(ws, h, tolerance, n)) return false;
-  if (n == 0) return true;
-  couple_bounds(ws, p, h, tolerance, n);
-  if (jam_loads(ws, n, factor_lu(n, f.load_matrix, f.load_pivot), h)) return true;
-  solve_lu(n, f.load_matrix, f.load_pivot, f.load_off);
-  for (int a = 0; a < n; ++a) {
-    const int c = int(ws.sys.load_contact[f.follower[a]]), side = bound_side(ws, c, tolerance);
-    const double size = larger(side * (f.impulse[c] + f.load_off[a]), 0.0);
-    if (is_rigid(ws, c)) f.lower[c] = f.upper[c] = side * size;
-    if (side < 0)
-      f.lower[c] = -size, f.kinetic[2 * c + 1] = f.limit[2 * c + 1] = size / h;
-    else
-      f.upper[c] = size, f.kinetic[2 * c] = f.limit[2 * c] = size / h;
+  bool moves = false;
+  const int n = see_bounds(ws, h, tolerance, moves);
+  if (!moves) return false;
+  couple_bounds(ws, p, h, tolerance, n, false);
+  if (solve_bounds(f, n) > 0) {
+    // a solution that has gone beyond a change of line goes back to the line before
+    for (int a = 0; a < n; ++a) f.follower[a] = f.follower[a] < 0 ? -1 - f.follower[a] : f.follower[a];
+    couple_bounds(ws, p, h, tolerance, n, true);
+    solve_bounds(f, n);
   }
+  for (int l = 0; l < ws.sys.loads; ++l) {
+    const int c = int(ws.sys.load_contact[l]);
+    for (int way = 0; way < 2; ++way)
+      f.load_line[2 * l + way] = bound_at(ws, c, 2 * way - 1).line_at(load_impulse(ws, l) / h);
+  }
+  for (int a = 0; a < n; ++a) take_bound(ws, a, h, tolerance);
   return true;
 }
 

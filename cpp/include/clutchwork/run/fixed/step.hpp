@@ -46,6 +46,27 @@ inline void see_middle(Run& ws) {
   }
 }
 
+/// What a step changes beside its results: segments of signals, faults and their events.
+inline void keep_outside(Run& ws) {
+  Fixed<double>& f = ws.fixed;
+  for (int i = 0; i < ws.sys.inputs; ++i) f.segment[i] = ws.in.signal[i].segment;
+  for (int c = 0; c < ws.sys.contacts; ++c) f.fault[c] = ws.contact.fault[c];
+  f.failed = ws.contact.failed, f.events = ws.events.n, f.counted = ws.statistics.events;
+}
+/// Signals as they were before the step.
+inline void rewind_signals(Run& ws) {
+  for (int i = 0; i < ws.sys.inputs; ++i) ws.in.signal[i].segment = ws.fixed.segment[i];
+  load_inputs(ws, ws.time);
+  refresh_loads(ws);
+}
+/// All of it: the step that was made is none.
+inline void rewind(Run& ws) {
+  Fixed<double>& f = ws.fixed;
+  for (int c = 0; c < ws.sys.contacts; ++c) ws.contact.fault[c] = f.fault[c];
+  ws.contact.failed = f.failed, ws.events.n = f.events, ws.statistics.events = f.counted;
+  rewind_signals(ws);
+}
+
 /// Contacts fail whose fault is there now.
 inline void see_faults(Run& ws) {
   for (int i = 0; i < ws.guard.n_faulty; ++i) {
@@ -177,7 +198,7 @@ inline Status make_step(Run& ws, const double t, const double h, const double en
   if (ws.sys.loads > 0) see_free_loads(ws, h);
   if (!find_impulses(ws, h, tolerance)) return Status::no_mode;
   if (!hold_rigid(ws, h, tolerance)) return Status::jammed;
-  if (gives_way(ws, tolerance)) return make_step(ws, t, h, end);
+  if (gives_way(ws, tolerance)) return rewind_signals(ws), make_step(ws, t, h, end);
   for (int l = 0; l < ws.sys.loads; ++l) ws.loads.now[l] = load_impulse(ws, l) / h;
   move(ws, h);
   if (!are_known(ws)) return Status::out_of_table;
