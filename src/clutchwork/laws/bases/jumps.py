@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 from itertools import pairwise
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING, Any, NamedTuple
 
-from clutchwork.laws.bases.expression import PRESSURE, SLIP, TEMPERATURE
+from clutchwork.laws.bases.expression import INPUTS, PRESSURE, SLIP, TEMPERATURE
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping, Sequence
@@ -41,9 +41,11 @@ def first_jump(program: Program, places: Sequence[Mapping[str, float]], slips: S
 
     Parameters: places, inputs other than the slip; slips, rising.
     """
-    first = 3 + len(program.states) + len(program.names) + len(program.constants)
+    first = len(INPUTS) + len(program.states) + len(program.names) + len(program.constants)
     conditions = [first + k for k, node in enumerate(program.nodes) if node.operation in CONDITIONS]
     divisors = [node.of[DENOMINATORS[node.operation]] for node in program.nodes if node.operation in DENOMINATORS]
+    # numbers of the law and constants stay
+    divisors = [i for i in divisors if i < len(INPUTS) or i >= first]
     if not conditions and not divisors:
         return None
     results = (program.coefficient, program.at_rest, *program.rates)
@@ -53,8 +55,11 @@ def first_jump(program: Program, places: Sequence[Mapping[str, float]], slips: S
         told = [registers[i] for i in conditions], [registers[i] > 0.0 for i in divisors]
         return told, [registers[i] for i in results]
 
+    looked: tuple[Inputs, Any] = ({}, None)
     for before, after in _segments(places, slips):
-        (own, first_values), (others, last_values) = seen(before), seen(after)
+        own, first_values = looked[1] if looked[0] == before else seen(before)
+        others, last_values = seen(after)
+        looked = after, (others, last_values)
         if own == others:
             continue
         low, high = before, after
