@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 
 from clutchwork.base.classes import dataclass
 from clutchwork.base.errors import UnknownName, near
+from clutchwork.base.memoize import memoize
 from clutchwork.base.paths import fitting
 from clutchwork.base.plural import columns
 from clutchwork.base.quote import listed, quote
@@ -204,6 +205,7 @@ class Events(Sequence[Event]):
         put_csv(fitting("run.events.to_csv", path, "events.csv", [".csv"]), [heads, *lines])
 
 
+@memoize
 def contact_domains(system: System) -> dict[str, Domain]:
     """The contacts of a System in order, and the motion that each is in."""
     return {contact.name: directions(contact)[0].domain for contact in system.contacts}
