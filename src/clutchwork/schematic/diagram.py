@@ -215,10 +215,19 @@ def _has_room(thing: Thing, helper: Thing) -> bool:
     return alone and len(helper.pins) == 1 and thing.source.role is not Role.PROCESS
 
 
+def _oil_ports(component: Component) -> list[str]:
+    """Ports for oil, in the order in which it is meant to flow."""
+    return [item.name for item, spec in specs(type(component), "signal") if spec.draws]
+
+
+def first_oil_port(component: Component) -> str:
+    """Where oil is meant to come in; empty if there is no port."""
+    return next(iter(_oil_ports(component)), "")
+
+
 def _sumps(component: Component) -> frozenset[str]:
     """Ports for oil at the pressure around."""
-    ports = (item.name for item, spec in specs(type(component), "signal") if spec.draws)
-    values = ((name, getattr(component, name, None)) for name in ports)
+    values = ((name, getattr(component, name, None)) for name in _oil_ports(component))
     return frozenset(name for name, value in values if isinstance(value, Real) and value == 0)
 
 

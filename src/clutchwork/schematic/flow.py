@@ -12,7 +12,7 @@ import numpy as np
 
 from clutchwork.base.classes import dataclass
 from clutchwork.declare.schema import Role
-from clutchwork.schematic.diagram import Thing
+from clutchwork.schematic.diagram import Thing, first_oil_port
 from clutchwork.schematic.symbols.symbol import LEFT, RIGHT
 
 TRUNK, BRANCH = 0.2, 0.8  # what being on the way from source to load weighs, and what the current at most
@@ -60,7 +60,7 @@ def flow(nodes: list[Thing], elements: list[Thing]) -> Flow:
         first = element.what == "heat" or drives(element.source) is True
         first |= drives(element.source) is False and id(node) in driving and element.source.role is not Role.CONTACT
         # oil that comes out of the sump
-        first |= node.what == "oil" and not {"outlet", "clutch"}.isdisjoint(element.pins)
+        first |= node.what == "oil" and first_oil_port(element.source) not in element.pins
         made.sides[id(element)] = dict.fromkeys(element.pins, RIGHT if first else LEFT)
     return made
 

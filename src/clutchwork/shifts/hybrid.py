@@ -88,8 +88,10 @@ class HybridSettings:
 def _is_line(line: Any) -> bool:
     """Whether it has points of two numbers, in rising order."""
     try:
-        points = [(float(x), float(y)) for x, y in line]
+        points = [(x, y) for x, y in line]
     except (TypeError, ValueError):
+        return False
+    if not all(isinstance(number, Real) for point in points for number in point):
         return False
     rises = all(one[0] < two[0] for one, two in pairwise(points))
     return bool(points) and rises and all(isfinite(x) and isfinite(y) for x, y in points)

@@ -177,9 +177,9 @@ class FeltJerk:
         if not self.is_too_long(begin, end):
             return []
         first, last = self.inside(begin, end)
+        takes = f"two windows of {self.window:g} s take {2.0 * self.window:g} s"
         have = f"there are {max(last - first, 0.0):g} s of the run"
-        return [f"{self.name}: two windows of {self.window:g} s take {2.0 * self.window:g} s, {have}; give a window= "
-                "or between= that fits, or a longer run"]  # fmt: skip
+        return [f"{self.name}: {takes}, {have}; give a window= or between= that fits, or a longer run"]
 
     def times(self, begin: float, end: float) -> Array:
         """Instants a small part of a window apart, at which a run gives the speed [s]; none if it is too short."""

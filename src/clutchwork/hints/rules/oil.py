@@ -16,8 +16,9 @@ if TYPE_CHECKING:
     from clutchwork.hints.look import Look
 
 BURSTS, SWAPPED, STARVED = "no relief valve", "ports swapped", "starved pump"
-# pressure of an inlet below which a pump is not filled [Pa], 20 kPa absolute: docs/theory/hydraulics.md (13)
-FILLED = 20e3 - 101325.0
+# absolute pressure of the surroundings, and of an inlet below which a pump is not filled [Pa]:
+# docs/theory/hydraulics.md (13)
+AMBIENT, FILLED = 101325.0, 20e3
 # ports of what oil should flow through from the first one to the second
 WAYS = {"relief_valve": ("inlet", "outlet"), "spool_valve": ("supply", "clutch")}
 
@@ -85,11 +86,11 @@ def starved_pump(look: Look) -> Iterator[Hint]:
         if not inlet:
             continue
         pressure = look.fine[f"{inlet}.pressure"]
-        low = np.flatnonzero(pressure < FILLED)
+        low = np.flatnonzero(pressure + AMBIENT < FILLED)
         if len(low):
             begin, end = (float(t) for t in look.time[low[[0, -1]]])
-            least = float(np.min(pressure)) + 101325.0
-            down = f"{inlet} comes down to {shown(least, 'Pa')} absolute, below {(FILLED + 101325.0) / 1e3:.3g} kPa"
+            least = float(np.min(pressure)) + AMBIENT
+            down = f"{inlet} comes down to {shown(least, 'Pa')} absolute, below {FILLED / 1e3:.3g} kPa"
             message = f"is not filled between {begin:.4g} and {end:.4g} s: {down}"
             remedy = f"let more oil into {inlet}, or turn the pump slower"
             yield Hint(STARVED, (_pump(flow), inlet), message, remedy, {"pressure [Pa]": least}, begin, end)
