@@ -53,8 +53,9 @@ inline int advance(const Task& task, const Member& member, std::vector<double>& 
 /// All of them on so many threads; the events of each thread.
 template <class Pause>
 std::vector<std::vector<double>> advance_all(const Task& task, int threads, Course& course, Pause&& pause) {
-  std::vector<std::vector<double>> events(std::size_t(threads), std::vector<double>{});
   const auto count = std::int64_t(task.members.size());
+  threads = int(std::min(std::int64_t(threads), 1 + (count - 1) / chunk));
+  std::vector<std::vector<double>> events(std::size_t(std::max(threads, 1)), std::vector<double>{});
   on_threads(threads, course, pause, [&](int number) {
     for (std::int64_t first; (first = course.next.fetch_add(chunk)) < count && !course.stop;) {
       const std::int64_t last = std::min(first + chunk, count);

@@ -228,48 +228,70 @@ std::vector<int> advance_group(const std::vector<Run*>& runs, double t_end) {
   return statuses;
 }
 
-/// Set a signal of some runs, each to a value of its own.
-void set_many(const std::vector<Run*>& runs, Numbers which, std::int64_t input, Vector values) {
-  if (values.shape(0) != which.shape(0)) throw nb::value_error("give a value for each run");
-  for (std::size_t i = 0; i < which.shape(0); ++i) {
-    const std::int64_t number = which.data()[i];
-    if (number < 0 || number >= std::int64_t(runs.size())) throw nb::index_error("no such run");
-    runs[std::size_t(number)]->set_input(input, values.data()[i]);
+/// Runs side by side, whose owner keeps them.
+class Side {
+ public:
+  explicit Side(const std::vector<Run*>& runs) {
+    for (Run* run : runs) runs_.push_back(nullptr), put(std::int64_t(runs_.size()) - 1, run);
   }
-}
 
-/// Let some runs go on, each up to its end: events of each thread, and what a signal handler raised meanwhile, or None.
-std::tuple<std::vector<std::vector<double>>, nb::object> advance_many(const std::vector<Run*>& runs, Numbers which,
-                                                                      Vector ends, Matrix rows, Statuses status,
-                                                                      int threads) {
-  namespace many = clutchwork::many;
-  const std::size_t count = runs.size();
-  if (ends.shape(0) != count || rows.shape(0) != count || status.shape(0) != count)
-    throw nb::value_error("give an end, a row and a status for each run");
-  many::Task task{{}, ends.data(), rows.data(), std::int64_t(rows.shape(1)), status.data()};
-  std::vector<bool> there(count, false);
-  for (std::size_t i = 0; i < which.shape(0); ++i) {
-    const std::int64_t number = which.data()[i];
-    if (number < 0 || number >= std::int64_t(count)) throw nb::index_error("no such run");
-    if (there[std::size_t(number)]) throw nb::value_error("a run appears twice");
-    there[std::size_t(number)] = true;
-    Run* run = runs[std::size_t(number)];
-    if (run == nullptr || run->row_size() != task.row_size) throw nb::value_error("rows must have row_size columns");
-    task.members.push_back({run->handle(), number});
+  /// Another run takes the place of one.
+  void put(std::int64_t number, Run* run) {
+    if (run == nullptr || (row_size_ >= 0 && run->row_size() != row_size_))
+      throw nb::value_error("all runs have rows alike");
+    row_size_ = run->row_size();
+    at(number) = run->handle();
   }
-  clutchwork::Course course;
-  nb::object raised = nb::none();
-  std::vector<std::vector<double>> events;
-  {
-    nb::gil_scoped_release release;
-    events = many::advance_all(task, threads > 1 ? threads : 1, course, [&] {
-      nb::gil_scoped_acquire lock;
-      return clutchwork::door::heard(raised, [] {});
-    });
+
+  /// Set a signal of some runs, each to a value of its own.
+  void set(Numbers which, std::int64_t input, Vector values) {
+    if (values.shape(0) != which.shape(0)) throw nb::value_error("give a value for each run");
+    for (std::size_t i = 0; i < which.shape(0); ++i) {
+      if (!cw_set_input(at(which.data()[i]), input, values.data()[i]))
+        throw nb::value_error("unknown input, or the value is not finite");
+    }
   }
-  if (raised.is_none()) clutchwork::door::heard(raised, [] {});
-  return {std::move(events), raised};
-}
+
+  /// Let some go on, each up to its end: events of each thread, and what a signal handler raised meanwhile, or None.
+  std::tuple<std::vector<std::vector<double>>, nb::object> advance(Numbers which, Vector ends, Matrix rows,
+                                                                   Statuses status, int threads) {
+    namespace many = clutchwork::many;
+    const std::size_t count = runs_.size();
+    if (ends.shape(0) != count || rows.shape(0) != count || status.shape(0) != count)
+      throw nb::value_error("give an end, a row and a status for each run");
+    many::Task task{{}, ends.data(), rows.data(), std::int64_t(rows.shape(1)), status.data()};
+    if (task.row_size != row_size_) throw nb::value_error("rows must have row_size columns");
+    std::vector<bool> there(count, false);
+    for (std::size_t i = 0; i < which.shape(0); ++i) {
+      const std::int64_t number = which.data()[i];
+      cw_run* run = at(number);
+      if (there[std::size_t(number)]) throw nb::value_error("a run appears twice");
+      there[std::size_t(number)] = true;
+      task.members.push_back({run, number});
+    }
+    clutchwork::Course course;
+    nb::object raised = nb::none();
+    std::vector<std::vector<double>> events;
+    {
+      nb::gil_scoped_release release;
+      events = many::advance_all(task, threads > 1 ? threads : 1, course, [&] {
+        nb::gil_scoped_acquire lock;
+        return clutchwork::door::heard(raised, [] {});
+      });
+    }
+    if (raised.is_none()) clutchwork::door::heard(raised, [] {});
+    return {std::move(events), raised};
+  }
+
+ private:
+  std::vector<cw_run*> runs_;
+  std::int64_t row_size_ = -1;
+
+  cw_run*& at(std::int64_t number) {
+    if (number < 0 || number >= std::int64_t(runs_.size())) throw nb::index_error("no such run");
+    return runs_[std::size_t(number)];
+  }
+};
 
 }  // namespace
 
@@ -284,10 +306,13 @@ NB_MODULE(_core, m) {
   bind_sweep(m);
   m.def("advance_group", &advance_group, nb::arg("runs"), nb::arg("t_end"),
         "Advance runs to t_end [s] together, without output: a status for each.");
-  m.def("set_many", &set_many, nb::arg("runs"), nb::arg("which"), nb::arg("input"), nb::arg("values"),
-        "Set a signal of some runs, each to a value of its own.");
-  m.def("advance_many", &advance_many, nb::arg("runs"), nb::arg("which"), nb::arg("ends"), nb::arg("rows"),
-        nb::arg("status"), nb::arg("threads"), "Let some runs go on side by side, each up to an end of its own.");
+  nb::class_<Side>(m, "Side",
+                   "Runs side by side, which others keep: each is set to values and goes on to ends of its own.")
+      .def(nb::init<const std::vector<Run*>&>(), nb::arg("runs"))
+      .def("put", &Side::put, nb::arg("number"), nb::arg("run"))
+      .def("set", &Side::set, nb::arg("which"), nb::arg("input"), nb::arg("values"))
+      .def("advance", &Side::advance, nb::arg("which"), nb::arg("ends"), nb::arg("rows"), nb::arg("status"),
+           nb::arg("threads"));
   nb::class_<Run>(m, "Run", "One run of a frozen system: its memory, options, signals and results.")
       .def(nb::init<nb::bytes>(), nb::arg("system"))
       .def("set_option", &Run::set_option, nb::arg("name"), nb::arg("value"))

@@ -61,6 +61,24 @@ def test_gear_losses_follow_their_load(kind: str) -> None:
     assert errors[1] < 2e-3, errors
 
 
+def test_a_gear_at_rest_beside_a_brake_that_holds_it() -> None:
+    """What loads the gear is round-off there, which decides nothing: no torque below the static one moves it."""
+    d = cw.Driveline("held")
+    rotor, flange = d.shaft("rotor", inertia=1.5e-4), d.shaft("flange", inertia=0.02)
+    d.add(cw.Torque("motor", shaft=rotor, torque=0.0))
+    stiction = cw.Stribeck(static=0.03, kinetic=0.02, speed=2.0)
+    d.add(cw.Brake("seal", shaft=rotor, friction=stiction, gain=1.0, normal_force=1.0))
+    d.add(cw.LossyGear("gear", input=rotor, output=flange, ratio=100.0, efficiency=0.7))
+    torques = np.linspace(-0.0299, 0.0299, 200)
+    sims = cw.Simulators(d, len(torques), **fixed(1e-3))
+    sims["motor.torque"] = torques
+    for _ in range(20):
+        sims.advance(1e-3)
+    assert not sims.failed.any()
+    assert np.abs(sims["rotor.speed"]).max() < 1e-12
+    assert np.abs(sims["seal.torque"] + torques).max() < 1e-12
+
+
 def bound(run: cw.Trajectory) -> np.ndarray:
     """What the gear takes of the torque of its input less what friction takes of it, in units of that."""
     return np.abs(run["gear.torque"]) - run["gear.capacity"]

@@ -75,6 +75,28 @@ def test_random_drivelines_have_the_bits_of_single_ones(seed: int) -> None:
             np.testing.assert_array_equal(sims[names], [one[names] for one in alone])
 
 
+@pytest.mark.parametrize("threads", [1, 3])
+def test_fixed_steps_have_the_bits_of_single_ones(threads: int) -> None:
+    """Each with torques of its own, of which some leave the seal at rest; two of them begin anew on the way."""
+    system, count, scatter = joint().assemble(), 40, np.random.default_rng(3)
+    options: dict[str, Any] = {"method": "fixed", "step": 1e-3}
+    sims = cw.Simulators(system, count, threads=threads, **options)
+    alone = [cw.Simulator(system, **options) for _ in range(count)]
+    for k in range(30):
+        if k == 15:
+            sims.reset([4, 30])
+            alone[4].reset(), alone[30].reset()
+        torques = scatter.uniform(-0.06, 0.06, count)
+        sims["motor.torque"] = torques
+        for one, torque in zip(alone, torques.tolist(), strict=True):
+            one.set("motor.torque", torque)
+            one.advance(1e-3)
+        sims.advance(1e-3)
+        names = ["rotor.speed", "link.speed", "spring.torque", "gear.heat", "link.angle", "rotor.acceleration"]
+        np.testing.assert_array_equal(sims[names], [one[names] for one in alone])
+    assert not sims.failed.any()
+
+
 def test_what_varies_is_that_of_a_changed_system() -> None:
     system, count = joint().assemble(), 20
     inertias, ratios = np.linspace(0.3, 0.9, count), np.tile([80.0, 100.0], count // 2)

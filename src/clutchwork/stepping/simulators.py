@@ -41,7 +41,8 @@ class Simulators:
     """Many runs of one driveline side by side: arrays in, arrays out, on all cores. Each has the bits of a `Simulator`.
 
     Use them where many closed loops run at once: a policy that learns, a controller against a thousand plants, a
-    particle filter. Each run has a number, a time, parameters and a status of its own.
+    particle filter. Each run has a number, a time, parameters and a status of its own. With steps of about a
+    millisecond, `method="fixed"` and a `step` of that length take a fraction of the time.
     """
 
     @explained("cw.Simulators")
@@ -75,6 +76,7 @@ class Simulators:
         self._own = self._varied("cw.Simulators", vary or {}, self._count)
         self._start = start
         self._runs = [self._begun(number) for number in range(self._count)]
+        self._side = core().Side(self._runs)
         self._origin = [run.save() for run in self._runs] if start is not None else None
         self._rows = np.empty((self._count, self._runs[0].row_size))
         self._times = np.array([run.time for run in self._runs])
@@ -114,7 +116,7 @@ class Simulators:
         for time in np.unique(self._times[chosen]).tolist():
             ends[self._times == time] = after(time, step)
         chosen = chosen[ends[chosen] > self._times[chosen]]
-        found, raised = core().advance_many(self._runs, chosen, ends, self._rows, self._status, self._threads)
+        found, raised = self._side.advance(chosen, ends, self._rows, self._status, self._threads)
         self._events = np.concatenate([np.reshape(one, (-1, 1 + len(EVENT))) for one in found])
         if raised is not None:
             # some have got there, some have not begun: each stands where it is, and can go on
@@ -152,7 +154,7 @@ class Simulators:
         if problems:
             raise ModelError(problems, self._system.name)
         for place, values in plan:
-            core().set_many(self._runs, chosen, place, values)
+            self._side.set(chosen, place, values)
         self._stale[chosen] = True
 
     def __setitem__(self, name: str, value: ArrayLike) -> None:
@@ -268,6 +270,7 @@ class Simulators:
         for number in chosen:
             if self._origin is None:
                 self._runs[number] = self._begun(number)
+                self._side.put(number, self._runs[number])
             else:
                 self._runs[number].restore(self._origin[number])
             self._here(number)

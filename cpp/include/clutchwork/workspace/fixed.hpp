@@ -1,9 +1,13 @@
 #pragma once
+#include <clutchwork/components/bound.hpp>
 #include <clutchwork/workspace/arena.hpp>
 #include <clutchwork/workspace/settings.hpp>
 
 /// Fixed steps: their history, their matrices and their scratch. docs/theory/fixed-steps.md
 namespace clutchwork {
+
+/// Up to so many speeds their rows are whole.
+inline constexpr int most_whole_speeds = 4;
 
 template <class T>
 struct Fixed {
@@ -35,6 +39,8 @@ struct Fixed {
   T* factor = nullptr;        ///< Cholesky factor of the matrix of a step, by rows
   T* answer = nullptr;        ///< change of the speeds by a unit impulse of each contact
   T* mobility = nullptr;      ///< of the contacts, by rows: change of slips by unit impulses
+  T* rate_rows = nullptr;     ///< of few speeds: rates of directions by them
+  T* node_rows = nullptr;     ///< and speeds of nodes
 
   // scratch of a step
   T *ahead = nullptr, *state_ahead = nullptr, *given_ahead = nullptr;  ///< speeds and states predicted for its middle
@@ -44,7 +50,9 @@ struct Fixed {
   T *state_force = nullptr, *state_slope = nullptr;  ///< of each own state: change at the predicted rate; by the rate
   T* state_share = nullptr;                          ///< of each own state: part of the step at which it is taken
   T *start_rate = nullptr, *rate_change = nullptr;   ///< of each direction
+  T* gained = nullptr;                               ///< of each direction: rate that changes of the speeds make
   T* mean = nullptr;                                 ///< of each direction: torque
+  T *node_start = nullptr, *node_gain = nullptr;     ///< of each node: speed at the start, its change
   T *impulse = nullptr, *gradient = nullptr, *lower = nullptr, *upper = nullptr, *weight = nullptr;
   T *end_slip = nullptr, *solved = nullptr, *free_factor = nullptr;
   T *kinetic = nullptr, *limit = nullptr;  ///< of each contact: what resists slip backward, then forward [N m]
@@ -54,6 +62,8 @@ struct Fixed {
 
   // of each load: its impulse by changes of speeds, of prescribed ones, by impulses of contacts; without these
   T *load_by_speed = nullptr, *load_by_given = nullptr, *load_reach = nullptr, *load_free = nullptr;
+  T* load_size = nullptr;                         ///< of each load: the sum of the sizes of what it is without these
+  Bound<T>* load_bound = nullptr;                 ///< of each load: what holds against slip backward, then forward
   T *load_matrix = nullptr, *load_off = nullptr;  ///< of those at a bound: their system, what they are off
   int *follower = nullptr, *load_line = nullptr;  ///< which these are; lines of all bounds in the last round
   double load_miss = 0;                           ///< the largest part of itself that an impulse is off its bound
@@ -67,6 +77,9 @@ struct Fixed {
     a.take(p.kept, nd), a.take(p.torque, nd), a.take(p.held, 2 * nc);
     a.take(p.bends, nd), a.take(p.massless, nd), a.take(p.two_sided, nc);
     a.scratch(p.factor, nv * nv), a.scratch(p.answer, nc * nv), a.scratch(p.mobility, nc * nc);
+    const auto nn = has ? n.nodes : 0, whole = nv <= most_whole_speeds ? nv : 0;
+    a.scratch(p.rate_rows, nd * whole), a.scratch(p.node_rows, nn * whole);
+    a.scratch(p.gained, nd), a.scratch(p.node_start, nn), a.scratch(p.node_gain, nn);
     a.scratch(p.ahead, nv), a.scratch(p.state_ahead, ns), a.scratch(p.change, nv), a.scratch(p.state_change, ns);
     a.scratch(p.given_change, np), a.scratch(p.given_ahead, np), a.scratch(p.force, nd), a.scratch(p.slope, nd),
         a.scratch(p.predicted, nd);
@@ -77,7 +90,8 @@ struct Fixed {
     a.scratch(p.kinetic, 2 * nc), a.scratch(p.limit, 2 * nc), a.scratch(p.share, nc), a.scratch(p.instant, nc);
     const auto nl = has ? n.loads : 0;
     a.scratch(p.load_by_speed, nl * nv), a.scratch(p.load_by_given, nl * np), a.scratch(p.load_reach, nl * nc);
-    a.scratch(p.load_free, nl), a.scratch(p.load_matrix, nl * nl), a.scratch(p.load_off, nl);
+    a.scratch(p.load_free, nl), a.scratch(p.load_size, nl), a.scratch(p.load_bound, 2 * nl),
+        a.scratch(p.load_matrix, nl * nl), a.scratch(p.load_off, nl);
     a.take(p.follower, nl), a.take(p.load_line, 2 * nl), a.take(p.segment, has ? n.signals : 0), a.take(p.fault, nc);
     a.take(p.side, nc), a.take(p.list, nc), a.take(p.box, nc), a.take(p.mode, nc);
   }

@@ -6,40 +6,49 @@
 /// A run with fixed steps: docs/theory/fixed-steps.md
 namespace clutchwork::fixed {
 
-/// Rows of the step that fall before its end, or onto it.
-inline Status emit_step(Run& ws, const Look& look, double end, Sink& sink) {
-  const Fixed<double>& f = ws.fixed;
-  const std::int64_t size = ws.row.size;
-  auto emit = [&](double t, double s) {
-    double* row = sink.rows + size * sink.at;
-    fill_row(ws, look, s, look.h, s < 1 ? ws.contact.mode : f.mode, row);
-    if (!is_finite(ws, row)) return false;
-    if (sink.steps > 0) sink.times[sink.at] = t;
-    ++sink.at;
-    return true;
-  };
-  for (std::int64_t k = 1; k <= sink.steps; ++k) {
-    const double s = double(k) / double(sink.steps);
-    if (!emit(k == sink.steps ? end : look.t + s * look.h, s)) return Status::not_finite;
-  }
-  while (sink.steps == 0 && sink.at < sink.count && sink.times[sink.at] <= end) {
-    const double t = sink.times[sink.at];
-    if (!emit(t, t == end ? 1.0 : smaller(1.0, larger(0.0, (t - look.t) / look.h)))) return Status::not_finite;
-  }
+/// One row, at the share s of a step; `length`, `mode`: as in fill_row.
+inline Status emit(Run& ws, const Look& look, double t, double s, double length, const int* mode, Sink& sink) {
+  double* row = sink.rows + ws.row.size * sink.at;
+  fill_row(ws, look, s, length, mode, row);
+  if (!is_finite(ws, row)) return Status::not_finite;
+  if (sink.steps > 0) sink.times[sink.at] = t;
+  ++sink.at;
   return Status::running;
+}
+
+/// Rows of the step that fall before its end.
+inline Status emit_inside(Run& ws, const Look& look, double end, Sink& sink) {
+  Status status = Status::running;
+  for (std::int64_t k = 1; status == Status::running && k < sink.steps; ++k) {
+    const double s = double(k) / double(sink.steps);
+    status = emit(ws, look, look.t + s * look.h, s, look.h, ws.contact.mode, sink);
+  }
+  while (status == Status::running && sink.steps == 0 && sink.at < sink.count && sink.times[sink.at] < end) {
+    const double t = sink.times[sink.at], s = smaller(1.0, larger(0.0, (t - look.t) / look.h));
+    status = emit(ws, look, t, s, look.h, ws.contact.mode, sink);
+  }
+  return status;
+}
+
+/// Rows at its end, which the present state is.
+inline Status emit_end(Run& ws, const Look& step, double end, Sink& sink) {
+  const Look look{end, 0, step.change, step.given, step.state, step.torque, 1};
+  Status status = Status::running;
+  if (sink.steps > 0) return emit(ws, look, end, 0, step.h, ws.fixed.mode, sink);
+  while (status == Status::running && sink.at < sink.count && sink.times[sink.at] <= end)
+    status = emit(ws, look, end, 0, step.h, ws.fixed.mode, sink);
+  return status;
 }
 
 /// One row of the present.
 inline Status show_present(Run& ws, Sink& sink) {
   Fixed<double>& f = ws.fixed;
-  for (int d = 0; d < ws.n_directions; ++d) f.start_rate[d] = rate_row(ws.sys, d).times(ws.v), f.rate_change[d] = 0;
+  for (int d = 0; d < ws.n_directions; ++d) {
+    f.start_rate[d] = rate_row(ws.sys, d).times(ws.v), f.rate_change[d] = 0;
+    for (int p = 0; p < ws.sys.prescribed; ++p) f.start_rate[d] += prescribed_share(ws, d, p) * f.given[p];
+  }
   const Look look{ws.time, 0, f.gain, f.given_gain, f.state_gain, f.torque};
-  double* row = sink.rows + ws.row.size * sink.at;
-  fill_row(ws, look, 0, f.before, ws.contact.mode, row);
-  if (!is_finite(ws, row)) return Status::not_finite;
-  if (sink.steps > 0) sink.times[sink.at] = ws.time;
-  ++sink.at;
-  return Status::running;
+  return emit(ws, look, ws.time, 0, f.before, ws.contact.mode, sink);
 }
 
 /// Rows that are wanted at the present time, the end of the last step.
@@ -99,9 +108,11 @@ inline Status what_is_spent(const Run& ws, const Sink& sink) {
 inline Status finish_step(Run& ws, double h, double end, Sink& sink) {
   Fixed<double>& f = ws.fixed;
   const Look look{ws.time, h, f.change, f.given_change, f.state_change, f.mean};
-  const Status shown = emit_step(ws, look, end, sink);
+  Status shown = emit_inside(ws, look, end, sink);
   if (shown != Status::running) return shown;
   take_over(ws, look);
+  shown = emit_end(ws, look, end, sink);
+  if (shown != Status::running) return shown;
   report(ws, look, end);
   cross_pieces(ws);
   for (int d = 0; d < ws.n_directions; ++d) f.torque[d] = f.mean[d];

@@ -1,12 +1,11 @@
 #pragma once
 #include <clutchwork/components/dense.hpp>
 #include <clutchwork/components/direction.hpp>
+#include <clutchwork/run/fixed/products.hpp>
 #include <clutchwork/workspace.hpp>
 
 /// Loads as sums over a step: docs/theory/fixed-steps.md (12)
 namespace clutchwork::fixed {
-
-using Run = Workspace<double>;
 
 /// Rate of direction d in the virtual motion of load l.
 inline double load_rate(const System& sys, int l, int d) {

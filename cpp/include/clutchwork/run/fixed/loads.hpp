@@ -10,20 +10,22 @@ namespace clutchwork::fixed {
 /// Which bound a contact has: its static torque, its kinetic one, that for good; none, where a gear jams.
 enum Box : int { at_rest, sliding, slips_on, stops };
 
-/// The impulses of loads without those of contacts, where the change of the speeds without them is known.
+/// The impulses of loads without those of contacts, where the changes without them are known.
 inline void see_free_loads(Run& ws, double h) {
   const System& sys = ws.sys;
   Fixed<double>& f = ws.fixed;
   const int nv = int(sys.speeds), np = int(sys.prescribed);
   for (int l = 0; l < sys.loads; ++l) {
     double sum = dot(nv, f.load_by_speed + l * nv, f.change) + dot(np, f.load_by_given + l * np, f.given_change);
+    double size = abs(sum);
     for (int d = 0; d < ws.n_directions; ++d) {
       const double rate = load_rate(sys, l, d);
       if (rate == 0 || !is_smooth(ws, d)) continue;
-      const double middle = f.start_rate[d] + 0.5 * (f.rate_change[d] + rate_row(sys, d).times(f.change));
-      sum -= h * rate * (f.force[d] + f.kept[d] * middle);
+      const double middle = f.start_rate[d] + 0.5 * (f.rate_change[d] + f.gained[d]);
+      const double impulse = h * rate * (f.force[d] + f.kept[d] * middle);
+      sum -= impulse, size += abs(impulse);
     }
-    f.load_free[l] = sum;
+    f.load_free[l] = sum, f.load_size[l] = size;
   }
 }
 
@@ -33,16 +35,31 @@ inline double load_impulse(const Run& ws, int l) {
   return ws.fixed.load_free[l] + dot(nc, ws.fixed.load_reach + l * nc, ws.fixed.impulse);
 }
 
-/// What contact c can hold against slip in a direction, over its load.
-inline Bound<double> bound_at(const Run& ws, int c, int direction) {
-  const int d = int(ws.sys.elements) + c, mode = ws.contact.mode[c];
-  const double size = mode == locked || mode == open ? 0.0 : larger(mode * ws.fixed.predicted[d], 0.0);
-  return bound_of(ws, c, direction, size, ws.branch[d].piece);
+/// How large the parts are that make it: what round-off is measured by.
+inline double load_scale(const Run& ws, int l) {
+  const int nc = int(ws.sys.contacts);
+  double size = ws.fixed.load_size[l];
+  for (int c = 0; c < nc; ++c) size += abs(ws.fixed.load_reach[l * nc + c] * ws.fixed.impulse[c]);
+  return size;
 }
 
-/// The impulse that contact c can give against slip, where its load has the impulse `load`.
-inline double most_impulse(const Run& ws, int c, int direction, double load, double h) {
-  return larger(h * bound_at(ws, c, direction).at(load / h), 0.0);
+/// What the contacts that follow loads can hold in this step, over their loads.
+inline void see_bounds_of_loads(Run& ws) {
+  for (int l = 0; l < ws.sys.loads; ++l) {
+    const int c = int(ws.sys.load_contact[l]), d = int(ws.sys.elements) + c, mode = ws.contact.mode[c];
+    const double size = mode == locked || mode == open ? 0.0 : larger(mode * ws.fixed.predicted[d], 0.0);
+    for (int way = 0; way < 2; ++way)
+      ws.fixed.load_bound[2 * l + way] = bound_of(ws, c, 2 * way - 1, size, ws.branch[d].piece);
+  }
+}
+/// The same of load l against slip in a direction.
+inline const Bound<double>& bound_at(const Run& ws, int l, int direction) {
+  return ws.fixed.load_bound[2 * l + (direction > 0)];
+}
+
+/// The impulse that the contact of load l can give against slip, where that has the impulse `load`.
+inline double most_impulse(const Run& ws, int l, int direction, double load, double h) {
+  return larger(h * bound_at(ws, l, direction).at(load / h), 0.0);
 }
 
 /// The bounds of a contact; one between prescribed shafts has its impulse whatever they are.
@@ -61,11 +78,11 @@ inline void begin_loads(Run& ws, double h) {
   for (int l = 0; l < ws.sys.loads; ++l) {
     const int c = int(ws.sys.load_contact[l]), mode = ws.contact.mode[c];
     const double load = load_impulse(ws, l);
-    for (int way = 0; way < 2; ++way) f.load_line[2 * l + way] = bound_at(ws, c, 2 * way - 1).line_at(load / h);
+    for (int way = 0; way < 2; ++way) f.load_line[2 * l + way] = bound_at(ws, l, 2 * way - 1).line_at(load / h);
     if (mode == locked || mode == open) {
       set_bounds(ws, c, infinity, infinity, h);
     } else {
-      set_bounds(ws, c, most_impulse(ws, c, forward, load, h), most_impulse(ws, c, backward, load, h), h);
+      set_bounds(ws, c, most_impulse(ws, l, forward, load, h), most_impulse(ws, l, backward, load, h), h);
     }
   }
 }
@@ -94,8 +111,8 @@ inline int see_bounds(Run& ws, double h, double tolerance, bool& moves) {
   for (int l = 0; l < ws.sys.loads; ++l) {
     const int c = int(ws.sys.load_contact[l]), side = bound_side(ws, c, tolerance);
     if (f.box[c] == stops) continue;
-    const double load = load_impulse(ws, l), x = f.impulse[c], size = abs(x) + abs(load);
-    const double ahead = most_impulse(ws, c, forward, load, h), behind = most_impulse(ws, c, backward, load, h);
+    const double load = load_impulse(ws, l), x = f.impulse[c], size = abs(x) + load_scale(ws, l);
+    const double ahead = most_impulse(ws, l, forward, load, h), behind = most_impulse(ws, l, backward, load, h);
     set_bounds(ws, c, ahead, behind, h);
     const double wanted = side == 0 ? larger(smaller(x, behind), -ahead) : side < 0 ? -ahead : behind;
     moves = moves || abs(wanted - x) > (side == 0 ? 1e-12 : 1e-13) * size;
@@ -117,7 +134,7 @@ inline void couple_bounds(Run& ws, const Boxes& p, double h, double tolerance, i
     solve_free(p, m);
     for (int a = 0; a < n; ++a) {
       const int l = f.follower[a], c = int(ws.sys.load_contact[l]), side = bound_side(ws, c, tolerance);
-      const Bound<double> bound = bound_at(ws, c, -side);
+      const Bound<double>& bound = bound_at(ws, l, -side);
       const double load = load_impulse(ws, l) / h;
       const int line = last_lines ? f.load_line[2 * l + (side < 0)] : bound.line_at(load);
       f.load_matrix[a * n + b] = (a == b ? 1.0 : 0.0) - side * bound.slope[line] * answered(ws, p, l, from, m);
@@ -185,9 +202,8 @@ inline bool follow_loads(Run& ws, const Boxes& p, double h, double tolerance) {
     solve_bounds(f, n);
   }
   for (int l = 0; l < ws.sys.loads; ++l) {
-    const int c = int(ws.sys.load_contact[l]);
-    for (int way = 0; way < 2; ++way)
-      f.load_line[2 * l + way] = bound_at(ws, c, 2 * way - 1).line_at(load_impulse(ws, l) / h);
+    const double load = load_impulse(ws, l) / h;
+    for (int way = 0; way < 2; ++way) f.load_line[2 * l + way] = bound_at(ws, l, 2 * way - 1).line_at(load);
   }
   for (int a = 0; a < n; ++a) take_bound(ws, a, h, tolerance);
   return true;

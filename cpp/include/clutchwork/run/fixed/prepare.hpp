@@ -7,6 +7,7 @@
 #include <clutchwork/contacts/sticking.hpp>
 #include <clutchwork/motion/branches.hpp>
 #include <clutchwork/run/fixed/load_rows.hpp>
+#include <clutchwork/run/fixed/products.hpp>
 #include <clutchwork/workspace.hpp>
 
 /// What fixed steps take, and their matrices.
@@ -87,6 +88,7 @@ inline void pack_all(Run& ws) {
     const int kind = ws.sys.contact_kind[c];
     f.two_sided[c] = is_shaped(kind) || is_limited(kind);
   }
+  fill_rows(ws);
   weigh_loads(ws);
   f.ready = true;
 }

@@ -14,7 +14,13 @@ struct Look {
   double h = 0;                  ///< [s] its length
   const double *change, *given;  ///< change of the speeds and of the prescribed ones over h
   const double *state, *torque;  ///< change of the states; mean torque of each direction
+  double taken = 0;              ///< share of the step that is in the present state already
 };
+
+/// Rate of direction d at the share s of a step.
+inline double rate_at(const Run& ws, const Look& look, double s, int d) {
+  return ws.fixed.start_rate[d] + (s + look.taken) * ws.fixed.rate_change[d];
+}
 
 /// Power that supply i gives over a step in its middle: work on the shaft, and heat.
 inline double supply_power(const Run& ws, int i, double torque, double rate, const double* state) {
@@ -57,10 +63,12 @@ void energies_until(const Run& ws, const Look& look, double s, Add&& add) {
   }
 }
 
-/// Angle of node n at the share s of a step.
-inline double angle_at(const Run& ws, const Look& look, double s, int n) {
-  const double start = node_value(ws.sys, n, ws.v, ws.fixed.given);
-  return ws.angle[n] + s * look.h * (start + 0.5 * s * node_value(ws.sys, n, look.change, look.given));
+/// Angles of all nodes at the share s of a step.
+inline void angles_at(const Run& ws, const Look& look, double s, double* angle) {
+  const Fixed<double>& f = ws.fixed;
+  nodes_by(ws, ws.v, f.given, f.node_start), nodes_by(ws, look.change, look.given, f.node_gain);
+  for (int n = 0; n < ws.sys.nodes; ++n)
+    angle[n] = ws.angle[n] + s * look.h * (f.node_start[n] + 0.5 * s * f.node_gain[n]);
 }
 
 /// Speeds, accelerations and angles of the nodes, and the states; `length`: that of the step by which accelerations are
@@ -72,11 +80,13 @@ inline void fill_motion(const Run& ws, const Look& look, double s, double length
   // as they are behind the step, to the last bit
   for (int i = 0; i < sys.speeds; ++i) f.ahead[i] = ws.v[i] + s * look.change[i];
   for (int p = 0; p < sys.prescribed; ++p) f.given_ahead[p] = f.given[p] + s * look.given[p];
+  nodes_by(ws, f.ahead, f.given_ahead, row + at.speed);
+  nodes_by(ws, look.change, look.given, row + at.acceleration);
   for (int n = 0; n < sys.nodes; ++n) {
-    row[at.speed + n] = node_value(sys, n, f.ahead, f.given_ahead);
-    row[at.acceleration + n] = length > 0 ? node_value(sys, n, look.change, look.given) / length : 0;
-    row[at.angle + n] = ws.options.angles ? angle_at(ws, look, s, n) : ws.angle[n];
+    row[at.acceleration + n] = length > 0 ? row[at.acceleration + n] / length : 0;
+    row[at.angle + n] = ws.angle[n];
   }
+  if (ws.options.angles && s > 0) angles_at(ws, look, s, row + at.angle);
   for (int i = 0; i < sys.states; ++i) row[at.state + i] = ws.state[i] + s * look.state[i];
 }
 
@@ -85,15 +95,20 @@ inline void fill_energies(Run& ws, const Look& look, double s, double* row) {
   const System& sys = ws.sys;
   const RowLayout& at = ws.row;
   const int nd = ws.n_directions, ne = int(sys.elements);
+  auto copy = [&](std::int64_t to, const double* from, std::int64_t n) {
+    for (std::int64_t i = 0; i < n; ++i) row[to + i] = from[i];
+  };
+  copy(at.element_torque, look.torque, ne), copy(at.contact_torque, look.torque + ne, sys.contacts);
+  copy(at.element_work, ws.work, ne), copy(at.contact_work, ws.work + ne, sys.contacts);
+  copy(at.prescribed_work, ws.prescribed_work, sys.prescribed);
+  copy(at.supply_energy, ws.supplied, sys.supplies), copy(at.meter_energy, ws.metered, sys.meters);
+  if (!ws.options.work || s == 0) return;
   auto place = [&](int i) -> double& {
     const int source = i - nd, supply = source - int(sys.prescribed), meter = supply - int(sys.supplies);
     if (i < nd) return row[i < ne ? at.element_work + i : at.contact_work + i - ne];
     if (supply < 0) return row[at.prescribed_work + source];
     return row[meter < 0 ? at.supply_energy + supply : at.meter_energy + meter];
   };
-  for (int d = 0; d < nd; ++d) row[d < ne ? at.element_torque + d : at.contact_torque + d - ne] = look.torque[d];
-  for (int i = 0; i < fitted_powers(ws); ++i) place(i) = work_of(ws, i);
-  if (!ws.options.work || s == 0) return;
   energies_until(ws, look, s, [&](int i, double energy) { place(i) += energy; });
 }
 
@@ -104,23 +119,21 @@ inline void fill_flows(Run& ws, const Look& look, double s, double* row) {
   const RowLayout& at = ws.row;
   if (sys.flows > 0) {
     // as they are with the torques of the step
-    for (int d = 0; d < ws.n_directions; ++d) f.predicted[d] = f.start_rate[d] + s * f.rate_change[d];
+    for (int d = 0; d < ws.n_directions; ++d) f.predicted[d] = rate_at(ws, look, s, d);
     shared_rates(ws, f.predicted, look.torque, row + at.state, ws.observed.state_rates);
     for (int i = 0; i < sys.flows; ++i) row[at.flow + i] = flow_value(ws, i);
   }
   for (int i = 0; i < sys.supplies; ++i) {
     const int d = sys.supply_element[i];
-    const double rate = rate_of(ws, d) + s * f.rate_change[d];
-    row[at.supply_power + i] = supply_power(ws, i, look.torque[d], rate, row + at.state);
+    row[at.supply_power + i] = supply_power(ws, i, look.torque[d], rate_at(ws, look, s, d), row + at.state);
   }
 }
 
 /// Mode of contact c as a row tells it; one that never sticks moves the way it slips.
-inline int shown_mode(const Run& ws, int c, int mode, double s) {
+inline int shown_mode(const Run& ws, const Look& look, int c, int mode, double s) {
   if (!ws.contact.loaded[c]) return open;
   if (!ws.contact.compliant[c] || mode == locked) return mode;
-  const int d = int(ws.sys.elements) + c;
-  return ws.fixed.start_rate[d] + s * ws.fixed.rate_change[d] < 0 ? backward : forward;
+  return rate_at(ws, look, s, int(ws.sys.elements) + c) < 0 ? backward : forward;
 }
 
 /// The numbers of one row at the share s of a step.
@@ -134,7 +147,7 @@ inline void fill_row(Run& ws, const Look& look, double s, double length, const i
   fill_flows(ws, look, s, row);
   for (int c = 0; c < sys.contacts; ++c) {
     const int resisted = look.torque[sys.elements + c] > 0 ? backward : forward;
-    row[ws.row.contact_mode + c] = shown_mode(ws, c, mode[c], s);
+    row[ws.row.contact_mode + c] = shown_mode(ws, look, c, mode[c], s);
     row[ws.row.contact_capacity + c] = static_torque(ws, c, resisted);
   }
   for (int i = 0; i < sys.inputs; ++i) row[ws.row.input + i] = signal_value(ws, i, t);

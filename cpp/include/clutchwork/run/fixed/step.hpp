@@ -19,9 +19,8 @@ inline void predict(Run& ws, double h, double tolerance) {
   const double share = f.time == ws.time && f.before > 0 ? 0.5 * h / f.before : 0;
   for (int i = 0; i < sys.speeds; ++i) f.ahead[i] = ws.v[i] + share * f.gain[i];
   for (int i = 0; i < sys.states; ++i) f.state_ahead[i] = ws.state[i] + share * f.state_gain[i];
+  rates_by(ws, f.ahead, f.predicted), rates_by(ws, ws.v, f.start_rate);
   for (int d = 0; d < ws.n_directions; ++d) {
-    f.predicted[d] = rate_row(sys, d).times(f.ahead);
-    f.start_rate[d] = rate_row(sys, d).times(ws.v);
     for (int p = 0; p < sys.prescribed; ++p) {
       f.predicted[d] += prescribed_share(ws, d, p) * ws.in.prescribed[p];
       f.start_rate[d] += prescribed_share(ws, d, p) * f.given[p];
@@ -32,9 +31,8 @@ inline void predict(Run& ws, double h, double tolerance) {
 
 /// Signals at time t, beyond their knots where they have passed one.
 inline void read_signals(Run& ws, double t) {
-  if (ws.in.next_knot > t) return inputs_at(ws, t);
-  load_inputs(ws, t);
-  refresh_loads(ws);
+  // which contacts are pressed and which fail is seen in every step
+  ws.in.next_knot > t ? inputs_at(ws, t) : load_inputs(ws, t);
 }
 
 /// Inputs that are states or rates, as they are predicted for the middle.
@@ -104,10 +102,8 @@ inline void move_freely(Run& ws, double h) {
     for (int k = 0; k < row.n; ++k) x[row.column[k]] += impulse * row.value[k];
   }
   forward_solve(nv, f.factor, nv, x), backward_solve(nv, f.factor, nv, x);
-  for (int c = 0; c < nc; ++c) {
-    const int d = ne + c;
-    f.gradient[c] = f.start_rate[d] + f.rate_change[d] + rate_row(sys, d).times(x);
-  }
+  rates_by(ws, x, f.gained);
+  for (int c = 0; c < nc; ++c) f.gradient[c] = f.start_rate[ne + c] + f.rate_change[ne + c] + f.gained[ne + c];
 }
 
 /// Speeds without inertia follow torques at once, of which a step knows those in its middle: they go on from the
@@ -133,8 +129,9 @@ inline void move(Run& ws, double h) {
   Fixed<double>& f = ws.fixed;
   const int nv = int(sys.speeds), ne = int(sys.elements);
   for (int c = 0; c < sys.contacts; ++c) axpy(nv, f.impulse[c], f.answer + c * nv, f.change);
+  rates_by(ws, f.change, f.gained);
   for (int d = 0; d < ws.n_directions; ++d) {
-    f.rate_change[d] += rate_row(sys, d).times(f.change);
+    f.rate_change[d] += f.gained[d];
     f.mean[d] = is_smooth(ws, d) ? f.force[d] + f.kept[d] * (f.start_rate[d] + 0.5 * f.rate_change[d]) : 0;
     if (d >= ne) f.mean[d] += f.impulse[d - ne] / h;
   }
@@ -193,6 +190,7 @@ inline Status make_step(Run& ws, const double t, const double h, const double en
   see_loads(ws);
   if (!see_torques(ws, h)) return Status::no_mode;
   for (int c = 0; c < ws.sys.contacts; ++c) see_contact(ws, c);
+  see_bounds_of_loads(ws);
   follow_prescribed(ws, end);
   move_freely(ws, h);
   if (ws.sys.loads > 0) see_free_loads(ws, h);
@@ -214,7 +212,7 @@ inline void take_over(Run& ws, const Look& look) {
   const System& sys = ws.sys;
   Fixed<double>& f = ws.fixed;
   if (ws.options.work) energies_until(ws, look, 1.0, [&](int i, double energy) { work_of(ws, i) += energy; });
-  for (int n = 0; ws.options.angles && n < sys.nodes; ++n) ws.angle[n] = angle_at(ws, look, 1.0, n);
+  if (ws.options.angles) angles_at(ws, look, 1.0, ws.angle);
   for (int i = 0; i < sys.speeds; ++i) ws.v[i] += f.change[i], f.gain[i] = f.change[i];
   for (int i = 0; i < sys.states; ++i) ws.state[i] += f.state_change[i], f.state_gain[i] = f.state_change[i];
   for (int p = 0; p < sys.prescribed; ++p) f.given[p] += f.given_change[p], f.given_gain[p] = f.given_change[p];

@@ -40,12 +40,11 @@ inline void see_ways(Run& ws, Branch<double>& b, double h) {
   }
 }
 
-/// Own states of a branch in the middle: fixed part and slope by the rate, in state_force and state_slope.
-inline void eliminate_states(Run& ws, const Branch<double>& b, double h) {
+/// The n own states of a branch in the middle: fixed part and slope by the rate, in state_force and state_slope.
+CLUTCHWORK_INLINE void eliminate_states(Run& ws, const Branch<double>& b, double h, const int n) {
   Fixed<double>& f = ws.fixed;
   const Jacobian<double>& j = ws.jacobian;
   const double* block = j.g_state + j.block[b.direction];
-  const int n = b.states;
   double fastest = 0, matrix[most_own_states * most_own_states];
   for (int i = 0; i < n; ++i) fastest = smaller(fastest, block[i * n + i]);
   const double share = share_of(h * fastest);
@@ -82,7 +81,8 @@ inline void see_branch(Run& ws, Branch<double>& b, double h) {
       branch_partial(ws, b, rate, 0.0, f.state_ahead, ws.observed.state_rates, state_partials(ws, d));
   double torque = p.torque, slope = p.by_rate;
   if (b.states > 0) {
-    eliminate_states(ws, b, h);
+    // mostly it is one, for which no loop is left
+    b.states == 1 ? eliminate_states(ws, b, h, 1) : eliminate_states(ws, b, h, b.states);
     for (int i = 0; i < b.states; ++i) {
       const int s = b.state + i;
       // the middle of the state from where it is taken
