@@ -1,5 +1,9 @@
 #pragma once
 #include <nanobind/nanobind.h>
+#include <nanobind/ndarray.h>
+
+#include <utility>
+#include <vector>
 
 /// What the parts of the Python door share.
 namespace clutchwork::door {
@@ -15,6 +19,14 @@ bool heard(nanobind::object& raised, Call&& call) {
     if (raised.is_none()) raised = nanobind::borrow(error.value());
     return true;
   }
+}
+
+/// An array of numpy over what it owns.
+template <class T>
+nanobind::object owned(std::vector<T>&& numbers, std::vector<std::size_t> shape) {
+  auto* kept = new std::vector<T>(std::move(numbers));
+  nanobind::capsule owner(kept, [](void* p) noexcept { delete static_cast<std::vector<T>*>(p); });
+  return nanobind::cast(nanobind::ndarray<nanobind::numpy, T>(kept->data(), shape.size(), shape.data(), owner));
 }
 
 }  // namespace clutchwork::door

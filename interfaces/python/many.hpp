@@ -3,6 +3,7 @@
 #include <clutchwork/layout.gen.hpp>
 
 #include <algorithm>
+#include <cmath>
 #include <cstdint>
 #include <vector>
 
@@ -19,6 +20,20 @@ struct Member {
   std::int64_t number;  ///< which it is: of its row, its status, its events
 };
 
+/// Values of one signal that wait for the next step of each run; NaN: none does.
+struct Waiting {
+  std::int64_t input;
+  std::vector<double> values;
+
+  /// Give a run its value. False: it is refused.
+  bool give(cw_run* run, std::int64_t number) {
+    double& value = values[std::size_t(number)];
+    const bool taken = std::isnan(value) || cw_set_input(run, input, value);
+    value = __builtin_nan("");
+    return taken;
+  }
+};
+
 /// What is to be done, and where results go; each run is one thread's.
 struct Task {
   std::vector<Member> members;
@@ -26,13 +41,26 @@ struct Task {
   double* rows;        ///< of each number, at its end
   std::int64_t row_size;
   std::int32_t* status;
+  std::vector<Waiting>* waiting;
 };
+
+/// Memory of a run of a few speeds that steps read [byte]; what follows it is theirs less often.
+constexpr int often_read = 7168;
+
+/// Ask for the memory of a run that is next, while another one goes on.
+inline void ask_for(const cw_run* run) {
+  const auto* at = reinterpret_cast<const unsigned char*>(run);
+  for (int i = 0; i < often_read; i += 64) __builtin_prefetch(at + i, 1);
+}
 
 /// Numbers of an event, after the number of its run.
 inline std::int64_t event_kept() { return 1 + cw_event_size(); }
 
 /// One run to its end, with the row there; its events follow those that were found before.
 inline int advance(const Task& task, const Member& member, std::vector<double>& events) {
+  for (Waiting& one : *task.waiting) {
+    if (!one.give(member.run, member.number)) return -1;
+  }
   double time = task.ends[member.number], *row = task.rows + member.number * task.row_size;
   std::int64_t filled = 0, more = 0;
   int status;
@@ -61,6 +89,7 @@ std::vector<std::vector<double>> advance_all(const Task& task, int threads, Cour
       const std::int64_t last = std::min(first + chunk, count);
       for (std::int64_t i = first; i < last && !course.stop; ++i) {
         const Member& member = task.members[std::size_t(i)];
+        if (i + 1 < last) ask_for(task.members[std::size_t(i + 1)].run);
         cw_set_poll(member.run, &Course::stopped, &course);
         task.status[member.number] = advance(task, member, events[std::size_t(number)]);
         cw_set_poll(member.run, nullptr, nullptr);

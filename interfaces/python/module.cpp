@@ -9,6 +9,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <cmath>
 #include <memory>
 #include <string>
 #include <tuple>
@@ -18,6 +19,7 @@
 #include "many.hpp"
 
 namespace nb = nanobind;
+namespace many = clutchwork::many;
 using Vector = nb::ndarray<double, nb::shape<-1>, nb::c_contig, nb::device::cpu>;
 using Matrix = nb::ndarray<double, nb::shape<-1, -1>, nb::c_contig, nb::device::cpu>;
 using Numbers = nb::ndarray<std::int64_t, nb::shape<-1>, nb::c_contig, nb::device::cpu>;
@@ -243,23 +245,37 @@ class Side {
     at(number) = run->handle();
   }
 
-  /// Set a signal of some runs, each to a value of its own.
+  /// Set a signal of some runs, each to a value of its own, which waits for the next step: it is given where the memory
+  /// of the run is at hand.
   void set(Numbers which, std::int64_t input, Vector values) {
     if (values.shape(0) != which.shape(0)) throw nb::value_error("give a value for each run");
+    std::vector<double>& kept = waiting_of(input);
     for (std::size_t i = 0; i < which.shape(0); ++i) {
-      if (!cw_set_input(at(which.data()[i]), input, values.data()[i]))
-        throw nb::value_error("unknown input, or the value is not finite");
+      const std::int64_t number = which.data()[i];
+      cw_run* run = at(number);
+      double& value = kept[std::size_t(number)];
+      // one value after another at the same instant, as a single run takes them
+      if (!std::isnan(value) && !cw_set_input(run, input, value)) refuse();
+      value = values.data()[i];
+      if (!std::isfinite(value)) value = __builtin_nan(""), refuse();
     }
   }
 
-  /// Let some go on, each up to its end: events of each thread, and what a signal handler raised meanwhile, or None.
-  std::tuple<std::vector<std::vector<double>>, nb::object> advance(Numbers which, Vector ends, Matrix rows,
-                                                                   Statuses status, int threads) {
-    namespace many = clutchwork::many;
+  /// Give all values that wait.
+  void give() {
+    for (many::Waiting& one : waiting_) {
+      for (std::size_t i = 0; i < runs_.size(); ++i)
+        if (!one.give(runs_[i], std::int64_t(i))) refuse();
+    }
+  }
+
+  /// Let some go on, each up to its end: events behind the numbers of their runs, and what a signal handler raised
+  /// meanwhile, or None.
+  std::tuple<nb::object, nb::object> advance(Numbers which, Vector ends, Matrix rows, Statuses status, int threads) {
     const std::size_t count = runs_.size();
     if (ends.shape(0) != count || rows.shape(0) != count || status.shape(0) != count)
       throw nb::value_error("give an end, a row and a status for each run");
-    many::Task task{{}, ends.data(), rows.data(), std::int64_t(rows.shape(1)), status.data()};
+    many::Task task{{}, ends.data(), rows.data(), std::int64_t(rows.shape(1)), status.data(), &waiting_};
     if (task.row_size != row_size_) throw nb::value_error("rows must have row_size columns");
     std::vector<bool> there(count, false);
     for (std::size_t i = 0; i < which.shape(0); ++i) {
@@ -280,12 +296,25 @@ class Side {
       });
     }
     if (raised.is_none()) clutchwork::door::heard(raised, [] {});
-    return {std::move(events), raised};
+    std::vector<double> all;
+    for (const std::vector<double>& one : events) all.insert(all.end(), one.begin(), one.end());
+    const auto columns = std::size_t(many::event_kept()), n = all.size() / columns;
+    return {clutchwork::door::owned(std::move(all), {n, columns}), raised};
   }
 
  private:
   std::vector<cw_run*> runs_;
+  std::vector<many::Waiting> waiting_;
   std::int64_t row_size_ = -1;
+
+  [[noreturn]] static void refuse() { throw nb::value_error("unknown input, or the value is not finite"); }
+
+  std::vector<double>& waiting_of(std::int64_t input) {
+    for (many::Waiting& one : waiting_)
+      if (one.input == input) return one.values;
+    waiting_.push_back({input, std::vector<double>(runs_.size(), __builtin_nan(""))});
+    return waiting_.back().values;
+  }
 
   cw_run*& at(std::int64_t number) {
     if (number < 0 || number >= std::int64_t(runs_.size())) throw nb::index_error("no such run");
@@ -309,6 +338,7 @@ NB_MODULE(_core, m) {
   nb::class_<Side>(m, "Side",
                    "Runs side by side, which others keep: each is set to values and goes on to ends of its own.")
       .def(nb::init<const std::vector<Run*>&>(), nb::arg("runs"))
+      .def("give", &Side::give)
       .def("put", &Side::put, nb::arg("number"), nb::arg("run"))
       .def("set", &Side::set, nb::arg("which"), nb::arg("input"), nb::arg("values"))
       .def("advance", &Side::advance, nb::arg("which"), nb::arg("ends"), nb::arg("rows"), nb::arg("status"),

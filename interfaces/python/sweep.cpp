@@ -1,7 +1,6 @@
 #include "sweep.hpp"
 
 #include <nanobind/nanobind.h>
-#include <nanobind/ndarray.h>
 #include <nanobind/stl/optional.h>
 #include <nanobind/stl/string.h>
 #include <nanobind/stl/tuple.h>
@@ -14,19 +13,12 @@ namespace nb = nanobind;
 namespace {
 
 using namespace clutchwork::sweep;
+using clutchwork::door::owned;
 using Numbers = nb::ndarray<double, nb::shape<-1>, nb::c_contig, nb::device::cpu>;
 using Whole = nb::ndarray<std::int64_t, nb::shape<-1>, nb::c_contig, nb::device::cpu>;
 using Lines = nb::ndarray<std::int64_t, nb::shape<-1, -1>, nb::c_contig, nb::device::cpu>;
 using Words = nb::ndarray<std::uint64_t, nb::shape<-1, -1>, nb::c_contig, nb::device::cpu>;
 using Option = std::tuple<std::string, double>;
-
-/// An array of numpy over what it owns.
-template <class T>
-nb::object owned(std::vector<T>&& numbers, std::vector<std::size_t> shape) {
-  auto* kept = new std::vector<T>(std::move(numbers));
-  nb::capsule owner(kept, [](void* p) noexcept { delete static_cast<std::vector<T>*>(p); });
-  return nb::cast(nb::ndarray<nb::numpy, T>(kept->data(), shape.size(), shape.data(), owner));
-}
 
 /// Everything is checked here, so that no thread meets what it cannot use.
 void check(const Task& task) {

@@ -16,7 +16,7 @@ from clutchwork.base.plural import counted
 from clutchwork.base.quote import quote
 from clutchwork.declare.calls import explained, explained_methods
 from clutchwork.declare.core import core
-from clutchwork.declare.layout import DONE, EVENT
+from clutchwork.declare.layout import DONE
 from clutchwork.declare.options import Options
 from clutchwork.results.channels import channels
 from clutchwork.results.events import Events, contact_domains, from_rows
@@ -116,8 +116,7 @@ class Simulators:
         for time in np.unique(self._times[chosen]).tolist():
             ends[self._times == time] = after(time, step)
         chosen = chosen[ends[chosen] > self._times[chosen]]
-        found, raised = self._side.advance(chosen, ends, self._rows, self._status, self._threads)
-        self._events = np.concatenate([np.reshape(one, (-1, 1 + len(EVENT))) for one in found])
+        self._events, raised = self._side.advance(chosen, ends, self._rows, self._status, self._threads)
         if raised is not None:
             # some have got there, some have not begun: each stands where it is, and can go on
             self._status[chosen], self._stale[chosen] = DONE, True
@@ -248,6 +247,7 @@ class Simulators:
 
     def _refresh(self) -> None:
         """Rows of runs that were set since they went on."""
+        self._side.give()
         for number in np.flatnonzero(self._stale & ~self.failed).tolist():
             self._rows[number] = seen(self._runs[number])[0]
         self._rows[self.failed] = 0.0
@@ -262,6 +262,7 @@ class Simulators:
         Parameters: vary, other values for these runs, an array of one number for each, in place of those they had.
         """
         chosen = self._chosen("sims.reset", which).tolist()
+        self._side.give()
         if vary is not None:
             if self._start is not None:
                 raise UseError("sims.reset", ["vary needs a new start of every run, and these begin at a state"])
@@ -283,6 +284,7 @@ class Simulators:
             raise UseError(
                 "sims.save", [f"run {place} cannot go on, so there is nothing to save: {self.message(place)}"]
             )
+        self._side.give()
         return state_of(self._runs[place], self._own[place], ({}, {}))
 
     @explained("sims.restore")
@@ -298,6 +300,7 @@ class Simulators:
         chosen = self._chosen("sims.restore", which).tolist()
         for number in chosen:
             state.fits(self._own[number])
+        self._side.give()
         for number in chosen:
             put(self._runs[number], self._own[number], state)
             self._here(number)
