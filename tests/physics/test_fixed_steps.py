@@ -371,3 +371,19 @@ def test_energy_does_not_drift() -> None:
     assert len(run.events) > 100
     # round-off of as many additions, at random: some 1e-13
     assert abs(run.energy.residual) < 1e-10 * run.energy.turnover
+
+
+def test_a_contact_between_steps_is_that_of_the_last_one() -> None:
+    """One that never sticks is read the way it slips, prescribed speeds included, also where something was set."""
+    d = cw.Driveline("belt")
+    belt, disc = d.shaft("belt", inertia=0.1), d.shaft("disc", inertia=0.1)
+    d.add(cw.PrescribedSpeed("drive", shaft=belt, speed=10.0))
+    d.add(cw.Torque("brake", shaft=disc, torque=0.0))
+    law = cw.Tanh(kinetic=0.3, speed=0.5)
+    d.add(cw.Clutch("c", base=belt, follower=disc, friction=law, gain=1.0, normal_force=3.0))
+    sim = cw.Simulator(d, method="fixed", step=1e-3)
+    sim.advance(5e-3)
+    before = sim["c.state"], sim["c.slip"], sim["disc.speed"]
+    sim.set("brake.torque", 0.1)
+    assert (sim["c.state"], sim["c.slip"], sim["disc.speed"]) == before
+    assert before[0] == "backward"
