@@ -6,6 +6,7 @@
 #include <clutchwork/components/pieces.hpp>
 #include <clutchwork/contacts/sticking.hpp>
 #include <clutchwork/motion/branches.hpp>
+#include <clutchwork/motion/shared.hpp>
 #include <clutchwork/run/fixed/load_rows.hpp>
 #include <clutchwork/run/fixed/products.hpp>
 #include <clutchwork/workspace.hpp>
