@@ -480,7 +480,7 @@ def test_a_load_that_vanishes_again_and_again_has_one_largest_value() -> None:
 
 @pytest.mark.parametrize("size", [1e-30, 1.0])
 def test_a_peak_that_is_round_off_has_no_order(size: float) -> None:
-    # seed 82007: two peaks of 1e-31 N m that moved apart by as little were refused; of those that are some it is a cause
+    # seed 82007: two peaks of 1e-31 N m that moved apart by as little were refused; those that are some are
     d = cw.Driveline("tiny")
     a = d.shaft("a", inertia=1.0)
     d.add(cw.Torque("t", shaft=a, torque=cw.Table([(0.0, size), (0.4, 0.0), (0.6, 0.0), (1.0, size)])))
