@@ -492,16 +492,15 @@ def test_a_peak_that_is_round_off_has_no_order(size: float) -> None:
         assert function.gradient().matrix[0, 0] == pytest.approx(0.0, abs=1.0)
 
 
-@pytest.mark.parametrize("signal", ["housing.torque", "p.torque_ring"])
-def test_torques_that_are_rests_of_others(signal: str) -> None:
+def test_a_torque_that_is_a_rest_of_others() -> None:
     # seeds 90031, 90034: what is zero but for round-off looked like a kink by ratios that are in it
-    d = cw.Driveline("rests")
-    s, c, r = (d.shaft(name, inertia=inertia) for name, inertia in (("s", 0.0527), ("c", 0.0779), ("r", 1.38)))
-    d.add(cw.Planetary("p", sun=s, carrier=c, ring=r, ratio=1.5))
+    d = cw.Driveline("rest")
+    r, s, c = (d.shaft(name, inertia=inertia) for name, inertia in (("r", 1.38), ("s", 0.0527), ("c", 0.0779)))
+    d.add(cw.Torque("drive", shaft=c, torque=-2.47))
+    d.add(cw.DoublePlanetary("p", sun=s, carrier=c, ring=r, ratio=1.5))
     losses = {"efficiency": 0.853, "backward_efficiency": 0.285}
     d.add(cw.LossyGear("g", input=c, output=s, ratio=0.493, bearing_torque=0.442, **losses))
     d.add(cw.PrescribedPosition("motion", shaft=c, position=-0.449))
-    d.add(cw.Torque("drive", shaft=c, torque=-2.47))
-    found = derivatives(d, 0.1, [signal, "s.speed"], "g.ratio")
+    found = derivatives(d, 0.1, ["housing.torque", "s.speed"], "g.ratio")
     assert found.problems == ()
     assert found.matrix == pytest.approx(0.0, abs=1e-9)
