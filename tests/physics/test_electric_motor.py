@@ -203,6 +203,33 @@ def test_from_rest_either_way_drives(way, brakes):
     assert run["m.torque"][0] == way * 20.0
 
 
+@pytest.mark.parametrize("way", [1.0, -1.0])
+def test_held_at_rest_it_drives_whichever_way_its_command_turns(way):
+    d = cw.Driveline("held")
+    s = d.shaft("s", inertia=1.0)
+    grip = cw.Coulomb(static=1.0, kinetic=1.0)
+    d.add(cw.Brake("b", shaft=s, friction=grip, gain=1.0, normal_force=30.0, locked=True))
+    command = cw.Table([(0.0, way * 5.0), (1.0, -way * 50.0), (1.0, way * 50.0), (2.0, -way * 15.0)])
+    d.add(cw.ElectricMotor("m", shaft=s, command=command, max_torque=20.0, generator_torque=10.0))
+    run = d.simulate(2.0, times=[0.0, 0.5, 0.99, 1.01, 2.0])
+    assert run["m.torque"] == pytest.approx(way * np.array([5.0, -20.0, -20.0, 20.0, -15.0]), rel=1e-12)
+
+
+@pytest.mark.parametrize("method", ["rodas5p", "dopri5"])
+@pytest.mark.parametrize("way", [1.0, -1.0])
+def test_driven_from_rest_against_its_command_it_brakes_at_once(way, method):
+    """The limit at rest is that of the side to which it moves: nothing jumps in the first step."""
+    d, load, brakes, inertia = cw.Driveline("driven"), 5.0, 2.0, 0.5
+    s = d.shaft("s", inertia=inertia)
+    d.add(cw.Torque("t", shaft=s, torque=way * load))
+    d.add(cw.ElectricMotor("m", shaft=s, command=-way * 10.0, max_torque=3.0, generator_torque=brakes))
+    run = d.simulate(1.0, method=method)
+    rate = way * (load - brakes) / inertia
+    assert run["s.acceleration"] == pytest.approx(np.full(len(run.time), rate), rel=1e-12)
+    assert run["s.speed"][-1] == pytest.approx(rate, rel=1e-12)
+    assert cw.squared_jerk("s").of(run) == 0.0
+
+
 @pytest.mark.parametrize(
     ("values", "words"),
     [

@@ -89,7 +89,6 @@ KEPT: dict[str, Plain] = json.loads(Path(__file__).with_name("kept_models.json")
 OPEN = {
     "a row behind a jam at a dead point, where another event falls into the step of the jam": 320499,
     "a lag that begins with a speed, of a start that is later": 70044,
-    "a motor whose torque jumps as it leaves rest, in the row there": 3004861,
 }
 
 
@@ -153,6 +152,7 @@ MENDED: dict[str, list[int]] = {
     "a jump that was made twice where modes are decided again": [2000539],
     "a slip that a ratio drives between prescribed speeds": [3003594],
     "a motor that is held at rest, and one that breaks away": [3002445, 3002327],
+    "a motor whose torque jumped as it left rest, in the row there": [3004861],
     "a gear whose friction feeds its own load more and more": [2000824],
     "a converter whose impeller is the housing": [3002496],
     "a slip that stops within its band and goes on": [3000114],

@@ -185,7 +185,6 @@ def both_ways(tally: Tally, function: Any, given: Array, scales: Array, chosen: 
     try:
         runs, known = engine.runs, engine._asked
         point = runs.point(x)
-        point = engine.split(point, runs.forward(point))
         forward, back = runs.forward(point), runs.taped(point)
     except cw.NoGradient:
         return

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import replace
-from functools import cached_property, partial
+from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
@@ -16,8 +16,8 @@ from clutchwork.gradients.bends import Bends, bends_of, spread
 from clutchwork.gradients.doubts import Doubt, Doubts
 from clutchwork.gradients.grazing import noted, together
 from clutchwork.gradients.jerk import massless
-from clutchwork.gradients.lines import Line, lines, without_derivatives
-from clutchwork.gradients.measures import Context, measures
+from clutchwork.gradients.lines import UNKNOWN, Line, lines, unknown, without_derivatives
+from clutchwork.gradients.measures import Context, Measure, measures
 from clutchwork.gradients.runs import Run, RunPoint, Runs
 from clutchwork.gradients.settled import NEARER, STEP, Beside, Settling
 from clutchwork.gradients.task import GradientTask, GradientValues
@@ -32,6 +32,10 @@ MOST_AT_ONCE = 256
 FAR = 1e300
 # directions that a run carries at the cost of one
 AT_ONCE = 8
+# so much tighter is the tolerance of a run that knows more of what is rough, but not below the least
+TIGHTER, LEAST = 1e-2, 1e-13
+# a derivative may miss so much of the relative tolerance of a run
+BY_TOLERANCE = 100.0
 # a run is followed back from so many numbers on, and from so many more for each result
 FOLLOWED_FROM, FOLLOWED_FOR_EACH = 12, 4
 
@@ -51,7 +55,17 @@ class Exact:
     def _asked(self) -> Context:
         wanted = self.runs.wanted
         kept = {one.name: wanted.kept_as(one) for one in wanted.outputs.values() if isinstance(one, Integral)}
-        return Context(wanted.contacts, kept, wanted.begin, massless(self.task.system))
+        allowed = max(UNKNOWN, BY_TOLERANCE * self.task.options.rtol)
+        return Context(wanted.contacts, kept, wanted.begin, massless(self.task.system), allowed)
+
+    @cached_property
+    def _tighter(self) -> Exact | None:
+        """The same with a tighter tolerance."""
+        options = self.task.options
+        if options.rtol * TIGHTER < LEAST:
+            return None
+        changes = {"rtol": options.rtol * TIGHTER, "atol": options.atol * TIGHTER}
+        return Exact(replace(self.task, options=options.changed(changes)))
 
     # ---------------------------------------------------------------------------------------------------------- values
 
@@ -116,9 +130,9 @@ class Exact:
             point = self.runs.point(x)
         except NoGradient:
             return None
-        run = self._refined(point, 1)
+        run = self._run(point, 1)
         found = [one for output in self.task.outputs.values() for one in measures(run.primal, output, self._asked)]
-        if any(len(one.changes) != 1 or one.missed for one in found) or self._doubts(
+        if any(len(one.changes) != 1 or self._is_rough(point, run, one) for one in found) or self._doubts(
             point, run, without_derivatives(self.task.labels, found)
         ):
             return None
@@ -126,6 +140,9 @@ class Exact:
         for share, one in zip(weights.tolist(), found, strict=True):
             whole.include(one.changes[0], share)
         return np.array([one.value for one in found]), run.slope(whole)
+
+    def _is_rough(self, point: RunPoint, run: Run, one: Measure) -> bool:
+        return bool(one.missed) and bool(np.any(unknown(run, one, self.runs.sizes(point.x)) > self._asked.unknown))
 
     # ---------------------------------------------------------------------------------------------------- at one point
 
@@ -182,26 +199,22 @@ class Exact:
         return [Line(name, value, 0.0, none, none, self.task.t_end) for name, value in values]
 
     def lines(self, point: RunPoint) -> tuple[Run, list[Line]]:
-        """A run, and its requested outputs with plain derivatives."""
-        run, outputs = self._refined(point, len(self.task.labels)), self.task.outputs
+        """A run, and its requested outputs with plain derivatives; those that are rough are of a tighter run."""
+        run, found = self._lines(point)
+        if self._tighter is None or not any(one.rough for one in found):
+            return run, found
+        try:
+            nearer = self._tighter._lines(self._tighter.runs.point(point.x))[1]  # noqa: SLF001, its own kind
+        except NoGradient:
+            return run, found
+        whole = [
+            there._replace(value=here.value) if here.rough else here for here, there in zip(found, nearer, strict=True)
+        ]
+        return run, whole
+
+    def _lines(self, point: RunPoint) -> tuple[Run, list[Line]]:
+        run, outputs = self._run(point, len(self.task.labels)), self.task.outputs
         return run, lines(run, outputs, self.task.labels, self._asked, self.runs.sizes(point.x))
-
-    def _refined(self, point: RunPoint, results: int) -> Run:
-        """A run with rows on both sides of where signals of extremes bend or jump."""
-        run = self._run(point, results)
-        there = self.split(point, run)
-        return run if there is point else self._run(there, results)
-
-    def split(self, point: RunPoint, run: Run) -> RunPoint:
-        """The point with steps that end where signals of extremes bend or jump."""
-        plain, primal = self.runs.plain, run.primal
-        if plain.inside is None or not len(primal.steps):
-            return point
-        rows_at = partial(plain.rows_at, point.system, range(primal.rows.shape[1]))
-        steps, _ = plain.refined(primal.steps, primal.rows, primal.forms, plain.inside.columns, rows_at)
-        if steps is primal.steps:
-            return point
-        return point._replace(steps=steps, grid=np.unique(np.concatenate([self.runs.wanted.grid, steps.times.ravel()])))
 
     def _run(self, point: RunPoint, results: int) -> Run:
         """A run, followed back where results are few and numbers many."""

@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 from clutchwork.gradients import several_steps
 from clutchwork.gradients.functional import Functional
 from clutchwork.gradients.held_torques import torque_at_limit
-from clutchwork.gradients.instants import add_shift, add_turn
+from clutchwork.gradients.instants import add_shift, add_turn, missed
 from clutchwork.gradients.primal import SMOOTH, Primal
 from clutchwork.gradients.signals import add_signal, signal_at
 from clutchwork.gradients.steps import Steps
@@ -85,9 +85,13 @@ def candidates(one: Extreme, steps: Steps, values: Array) -> list[Located]:
     return sorted((one for one in found if one.value >= least), key=lambda one: one.share in (0.0, 1.0))
 
 
-def reaching(one: Extreme, steps: Steps, values: Array) -> Places:
-    """Steps that may reach the extreme."""
-    return np.unique(np.concatenate([NOWHERE, *(side.near for side in _near(one, steps, values))]))
+def reaching(one: Extreme, steps: Steps, values: Array, missed: Array) -> Places:
+    """Steps that may reach the extreme, or do so with what their polynomials may miss."""
+    coefficients, sides = np.einsum("nki,ni->nk", steps.basis, values), list(_near(one, steps, values))
+    best = max((side.best for side in sides), default=0.0)
+    most = [(side.sign * (coefficients @ PLACES.T)).max(axis=1) + missed for side in sides]
+    near = [np.union1d(side.near, np.flatnonzero(own >= best)) for side, own in zip(sides, most, strict=True)]
+    return np.unique(np.concatenate([NOWHERE, *near]))
 
 
 def _allowed(values: Array) -> float:
@@ -119,7 +123,9 @@ def _near(one: Extreme, steps: Steps, values: Array) -> Iterator[CandidateSteps]
         if len(near) > MOST_EQUAL:
             first = near[np.argsort(-upper[near], kind="stable")][:MOST_EQUAL]
             # of a plateau its ends are among those that are looked at
-            near = np.unique([*first, near[0], near[-1]])
+            level = near[(sign * samples[near]).min(axis=1) >= best - LEVEL * _allowed(values)]
+            ends = level if len(level) else near
+            near = np.unique([*first, ends[0], ends[-1]])
         yield CandidateSteps(sign, coefficients, near, tops, best, float((upper + rise).max(initial=-np.inf)))
 
 
@@ -224,8 +230,11 @@ def kinks(primal: Primal, found: list[Located]) -> tuple[float, ...]:
     return tuple(time for time, place in primal.meets if place in there)
 
 
-def add_extreme(primal: Primal, one: Extreme, found: Located, into: Functional) -> None:
-    """How an extreme changes: the signal at its instant, and that instant where it is that of an event."""
+def add_extreme(primal: Primal, one: Extreme, found: Located, into: Functional) -> tuple[Functional, float] | None:
+    """How an extreme changes: the signal at its instant, and that instant where it is that of an event.
+
+    Returns how that instant moves, and by how much the rate of the signal there may miss.
+    """
     steps, sign = primal.steps, 1.0 if one.kind == "minimum" else found.sign
     end, place = found.begins, (found.step, found.share)
     if end is None and not found.is_flat:
@@ -239,7 +248,7 @@ def add_extreme(primal: Primal, one: Extreme, found: Located, into: Functional) 
         rows, values = steps.rows[found.step], held.sign * primal.rows[steps.rows[found.step], held.column]
         into.add(rows, held.column, held.sign * whole[0][1][:, None])
         add_shift(primal, int(end or 0), sign * float(steps.right_slope[found.step] @ values), into)
-        return
+        return None
     for step, weights in whole:
         add_signal(primal, one.signal, steps.rows[step], weights, into)
     if not inside:
@@ -247,8 +256,12 @@ def add_extreme(primal: Primal, one: Extreme, found: Located, into: Functional) 
         rate = float(slopes[found.step] @ signal_at(primal, one.signal, steps.rows[found.step]))
         if primal.between[0][end] != SMOOTH:
             add_shift(primal, int(end or 0), sign * rate, into)
-        elif _jumps(primal, one, int(end or 0)):
+            moves = primal.functional()
+            add_shift(primal, int(end or 0), 1.0, moves)
+            return moves, abs(rate) * missed(primal, found.step, at_end=found.share == 1.0)
+        if _jumps(primal, one, int(end or 0)):
             add_turn(primal, one.signal, int(end or 0), sign * rate, into)
+    return None
 
 
 def _rows_of(primal: Primal, one: Extreme, first: int, last: int) -> Array:

@@ -12,6 +12,8 @@ Array = NDArray[np.float64]
 
 # jumps of accelerations, and of their slopes, that are more than what polynomials miss: of the larger side
 JUMP, BEND = 1e-6, 1e-4
+# of a speed: what slopes of rows do not see
+ROUND_OFF = 1e-14
 
 
 def add_shift(primal: Primal, step: int, share: float, into: Functional) -> None:
@@ -23,6 +25,16 @@ def add_shift(primal: Primal, step: int, share: float, into: Functional) -> None
         into.direct += share * primal.knots.moved[number]
     elif kind == KINK:
         _add_kink(primal, step, share, into)
+
+
+def missed(primal: Primal, step: int, *, at_end: bool) -> float:
+    """How far rates of the dense output of a step are off at an end, relative: those of speeds are accelerations."""
+    steps, rows = primal.steps, primal.rows[primal.steps.rows[step]]
+    slopes, limits = (steps.right_slope, steps.right) if at_end else (steps.left_slope, steps.left)
+    speeds, known = rows[:, primal.columns["speed"]], limits[step] @ rows[:, primal.columns["acceleration"]]
+    noise = ROUND_OFF * float(np.abs(speeds).max(initial=0.0) / steps.length[step])
+    apart = float(np.abs(slopes[step] @ speeds - known).max(initial=0.0)) - noise
+    return max(apart, 0.0) / max(float(np.abs(known).max(initial=0.0)), 1e-300)
 
 
 def add_turn(primal: Primal, capacity: str, step: int, share: float, into: Functional) -> None:

@@ -47,19 +47,25 @@ def add_jerk(primal: Primal, signal: str, acceleration: Array, into: Functional)
         add_shift(primal, int(step) + 1, float(before[step] ** 2 - behind[step] ** 2), into)
 
 
-def missed(primal: Primal, acceleration: Array) -> list[tuple[Functional, float]]:
-    """Instants that move and have another jerk on both sides, and how little is known of its square there.
+def missed(primal: Primal, signal: str, acceleration: Array, *, is_massless: bool) -> list[tuple[Functional, float]]:
+    """What moves and has another jerk on both sides, and how little is known of that there.
 
-    Parameters: acceleration, of a shaft without inertia, whose rows are slopes of the dense output.
+    Parameters: is_massless, of a shaft without inertia, whose accelerations are slopes of the dense output.
     """
     steps, found = primal.steps, list[tuple[Functional, float]]()
     before, behind = _limits(steps, acceleration)
-    last = MISSED * np.abs(np.einsum("ni,ni->n", steps.basis[:, PARTS - 1], acceleration)) / steps.length
-    for step in np.flatnonzero(primal.between[0] != SMOOTH):
-        moves = primal.functional()
-        add_shift(primal, int(step), 1.0, moves)
-        known = abs(before[step]) * last[step - 1] + abs(behind[step]) * last[step]
-        found.append((moves, 2.0 * float(known)))
+    degree = PARTS - 1 if is_massless else PARTS
+    last = MISSED * np.abs(np.einsum("ni,ni->n", steps.basis[:, degree], acceleration)) / steps.length
+    bends = np.r_[False, np.abs(behind - before)[1:-1] > last[1:] + last[:-1]]
+    for step in np.flatnonzero(bends | (primal.between[0] != SMOOTH)).tolist():
+        moves, lost = primal.functional(), (float(last[step - 1]), float(last[step]))
+        if primal.between[0][step] != SMOOTH:
+            add_shift(primal, step, 1.0, moves)
+            found.append((moves, 2.0 * (abs(float(before[step])) * lost[0] + abs(float(behind[step])) * lost[1])))
+        else:
+            rows, weights = steps.rows[[step, step - 1]], np.concatenate([steps.left[step], -steps.right[step - 1]])
+            add_signal(primal, signal, rows.ravel(), weights, moves)
+            found.append((moves, sum(lost)))
     return found
 
 

@@ -21,8 +21,8 @@ Places = NDArray[np.intp]
 ALIKE = 1e-6
 # what is not known of a derivative may be so much of the value, for a number that changes by all of itself
 UNKNOWN = 1e-6
-# a number that passes zero has at least this size, of the largest one of its kind
-PASSES = 1e-3
+# a number that passes zero has at least this size, of the largest one of its kind; what is less than that is zero
+PASSES, LEAST = 1e-3, 1e-18
 NOWHERE, NONE = np.zeros(0, dtype=np.intp), np.zeros(0)
 
 
@@ -40,6 +40,7 @@ class Line(NamedTuple):
     kinks: tuple[float, ...] = ()  # s, where knots meet that it depends on
     none: str = ""  # why it has no derivative from any side
     several: str = ""  # why both sides differ
+    rough: bool = False  # whether a run of a tighter tolerance knows its derivatives better
 
 
 def lines(run: Run, outputs: Mapping[str, Output], labels: Sequence[str], asked: Context, sizes: Array) -> list[Line]:
@@ -56,7 +57,9 @@ def lines(run: Run, outputs: Mapping[str, Output], labels: Sequence[str], asked:
                 size = _size(run.primal, columns, time)
                 made.append(Line(next(names), float(value), size, own, own, time, time, columns))
         else:
-            made += [_line(run, next(names), measure, sizes) for measure in measures(run.primal, one, asked)]
+            made += [
+                _line(run, next(names), measure, sizes, asked.unknown) for measure in measures(run.primal, one, asked)
+            ]
     return made
 
 
@@ -72,35 +75,41 @@ def _columns(one: Measure) -> Places:
     return np.concatenate([NOWHERE, *one.changes[0].columns]) if one.at is not None else NOWHERE
 
 
-def _line(run: Run, name: str, one: Measure, sizes: Array) -> Line:
+def _line(run: Run, name: str, one: Measure, sizes: Array, allowed: float) -> Line:
     if not one.changes:
         nothing, remedy = np.full(len(sizes), np.nan), "take one that does, or a later end time"
         why = f"{name} does not happen before {run.primal.t_end:g} s; {remedy}"
         return Line(name, one.value, 0.0, nothing, nothing, one.until, none=why)
     found = np.array([run.slope(change) for change in one.changes])
     least = most = found[0]
-    why = ""
-    apart = _apart(found, one.size / sizes) if len(found) > 1 else NOWHERE
+    why, lost = "", unknown(run, one, sizes)
+    apart = _apart(found, max(one.size, LEAST) / sizes) if len(found) > 1 else NOWHERE
     if len(apart):
         remedy = "move a number so that one of them is the only one"
         when = f"{one.when[0]:.9g} s and at {one.when[apart[0]]:.9g} s"
         why = f"{name} is reached at {when}, and they move apart; {remedy}"
         least, most = found.min(axis=0), found.max(axis=0)
-    if one.missed and (unknown := _unknown(run, one, sizes)).any():
-        least, most = (np.where(unknown, np.nan, side) for side in (least, most))
+    if one.is_massless and np.any(lost > UNKNOWN):
+        least, most = (np.where(lost > UNKNOWN, np.nan, side) for side in (least, most))
         what = "a jerk that jumps at an instant that moves, of a shaft without inertia, whose acceleration is not known"
         why = why or f"{name} takes {what} well enough; give the shaft an inertia"
     left, right = (most, least) if one.is_least else (least, most)
     columns = _columns(one)
-    size = one.size if one.at is None else _size(run.primal, columns, one.at)
-    return Line(name, one.value, size, left, right, one.until, one.at, columns, one.kinks, several=why)
+    size = max(one.size, LEAST) if one.at is None else _size(run.primal, columns, one.at)
+    rough = bool(why) or bool(np.any(lost > allowed))
+    return Line(name, one.value, size, left, right, one.until, one.at, columns, one.kinks, several=why, rough=rough)
 
 
-def _unknown(run: Run, one: Measure, sizes: Array) -> NDArray[np.bool_]:
-    """By which numbers too little is known of what moves."""
-    lost = sum((amount * np.abs(run.slope(moves)) for moves, amount in one.missed), start=np.zeros(len(sizes)))
-    found: NDArray[np.bool_] = lost * sizes > UNKNOWN * abs(one.value)
-    return found
+def unknown(run: Run, one: Measure, sizes: Array) -> Array:
+    """How much is not known of the derivatives, of the value, for numbers that change by all of themselves."""
+    if not run.is_forward and len(one.missed) > 1:
+        whole = run.primal.functional()
+        for moves, amount in one.missed:
+            whole.include(moves, amount)
+        lost: Array = np.abs(run.slope(whole))
+    else:
+        lost = sum((amount * np.abs(run.slope(moves)) for moves, amount in one.missed), start=np.zeros(len(sizes)))
+    return lost * sizes / max(abs(one.value), one.size, LEAST)
 
 
 def _size(primal: Primal, columns: Places, time: float) -> float:

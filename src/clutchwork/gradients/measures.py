@@ -43,6 +43,7 @@ class Measure(NamedTuple):
     size: float = 0.0  # of the signal whose extreme it is
     is_least: bool = False  # a minimum, which of equal ones is the one that falls most
     missed: tuple[tuple[Functional, float], ...] = ()  # what moves, and by how much its share in the value is not known
+    is_massless: bool = False  # of a shaft whose accelerations are not known well
 
 
 class Context(NamedTuple):
@@ -52,6 +53,9 @@ class Context(NamedTuple):
     kept_as: Mapping[str, str]  # integrals by name -> signal
     begin: float  # s
     massless: frozenset[str] = frozenset()  # accelerations of shafts without inertia
+    unknown: float = (
+        1e-6  # of the value: what may be missed of a derivative, for a number that changes by all of itself
+    )
 
 
 def measures(primal: Primal, one: Output, asked: Context) -> Iterator[Measure]:
@@ -110,10 +114,8 @@ def _when(primal: Primal, one: When, asked: Context) -> Measure:
 def _extreme(primal: Primal, one: Extreme) -> Measure:
     steps, values = primal.steps, signal_at(primal, one.signal, primal.steps.rows)
     found = extremes.apart(primal, extremes.candidates(one, steps, values))
-    changes = list[Functional]()
-    for place in found:
-        changes.append(primal.functional())
-        extremes.add_extreme(primal, one, place, changes[-1])
+    changes = [primal.functional() for _ in found]
+    missed = [extremes.add_extreme(primal, one, *both) for both in zip(found, changes, strict=True)]
     when = tuple(place.time(steps) for place in found)
     return Measure(
         value=extremes.value(one, found),
@@ -123,6 +125,7 @@ def _extreme(primal: Primal, one: Extreme) -> Measure:
         kinks=extremes.kinks(primal, found),
         size=float(np.abs(values).max(initial=0.0)),
         is_least=one.kind == "minimum",
+        missed=tuple(lost for lost in missed if lost is not None),
     )
 
 
@@ -142,6 +145,7 @@ def _felt(primal: Primal, one: FeltJerk, begin: float) -> Measure:
 def _jerk(primal: Primal, one: SquaredJerk, is_massless: bool) -> Measure:
     into, acceleration = primal.functional(), signal_at(primal, one.signal, primal.steps.rows)
     jerk.add_jerk(primal, one.signal, acceleration, into)
-    missed = tuple(jerk.missed(primal, acceleration)) if is_massless else ()
+    missed = tuple(jerk.missed(primal, one.signal, acceleration, is_massless=is_massless))
     kinks = jerk.kinks(primal, acceleration)
-    return Measure(primal.jerks[one.signal], (into,), primal.t_end, kinks=kinks, missed=missed)
+    value = primal.jerks[one.signal]
+    return Measure(value, (into,), primal.t_end, kinks=kinks, missed=missed, is_massless=is_massless)

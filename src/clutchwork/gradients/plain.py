@@ -73,13 +73,22 @@ class PlainRuns:
         found: Array = self._call([system], columns, 0, times)[2][0]
         return found
 
-    def with_jerks(self, system: bytes, forms: Mapping[str, Form]) -> tuple[Run, Steps, dict[str, float]]:
-        """One run, its steps, and the squared jerks that are asked for, by the signals that they are made of."""
-        asked = {one.signal for one in self.wanted.outputs.values() if isinstance(one, SquaredJerk)}
-        columns, own = over_columns([{name: forms[name] for name in asked}])
+    def with_steps(self, system: bytes, forms: Mapping[str, Form]) -> tuple[Run, Steps, dict[str, float]]:
+        """One run, its steps as one with derivatives looks into them, and squared jerks by their signals.
+
+        They end where signals of extremes bend or jump, which the rows at the very ends of its own steps see.
+        """
+        ones = [one for one in self.wanted.outputs.values() if isinstance(one, IN_STEPS)]
+        seen = self.inside.columns if self.inside is not None else ()
+        columns, own = over_columns([{one.signal: forms[one.signal] for one in ones}], seen)
         run = self.runs([system], columns, grid=False, steps=True)[0]
         steps = Steps.of_parts(run.times)
-        return run, steps, {name: _jerk(run, steps, own[0][name]) for name in asked}
+        whole = split = steps.covering()
+        if run.status == DONE:
+            places, rows_at = [columns.index(one) for one in seen], partial(self.rows_at, system, columns)
+            split, _ = self.refined(whole, run.rows, own[0], places, rows_at)
+        jerks = {one.signal: _jerk(run, steps, own[0][one.signal]) for one in ones if isinstance(one, SquaredJerk)}
+        return run, whole.inside() if split is whole else split, jerks
 
     def _call(self, systems: Sequence[bytes], columns: Sequence[int], parts: int, instants: Array | None = None) -> Any:
         count = len(systems)

@@ -137,7 +137,7 @@ def _rough(one: Extreme, steps: Steps, values: Array, may_bend: Mask) -> Iterato
         return
     last = np.abs(np.einsum("ni,ni->n", steps.basis[:, PARTS], values))
     size = float(np.abs(values).max(initial=0.0))
-    for step in reaching(one, steps, values).tolist():
+    for step in reaching(one, steps, values, last).tolist():
         if may_bend[step] and last[step] > ROUGH * size:
             yield step
 

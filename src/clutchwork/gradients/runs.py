@@ -122,9 +122,9 @@ class Runs:
         point = RunPoint(x, chart, words, slopes, moving, NO_STEPS, np.zeros(0), {}, self.wanted.grid, ())
         if not self.plain.in_steps:
             return point
-        run, steps, jerks = self.plain.with_jerks(point.system, self.signals.at(x))
+        run, steps, jerks = self.plain.with_steps(point.system, self.signals.at(x))
         self._refuse_stopped(run.status, run.detail)
-        return self._with_grid(point._replace(steps=steps.covering().inside(), events=run.events[:, 0], jerks=jerks))
+        return self._with_grid(point._replace(steps=steps, events=run.events[:, 0], jerks=jerks))
 
     def forward(self, point: RunPoint) -> Run:
         """A run with derivatives by all numbers."""

@@ -26,6 +26,9 @@ if TYPE_CHECKING:
 
 Array = NDArray[np.float64]
 
+# shares of a signal that are less, of the largest one, are round-off of shares like that
+LEFT = 1e-12
+
 
 @dataclass(frozen=True, eq=False)
 class SignalsAt:
@@ -84,8 +87,7 @@ class SignalsAt:
         made = {name: np.zeros((len(rows), len(x))) for name in self._open}
         forms = {name: self.at(x)[name] for name in made}
         here = _evaluated(forms, rows)
-        sizes = np.abs(here.reshape(len(made), -1)).max(axis=1, initial=0.0)
-        noise = ROUND_OFF * np.repeat(sizes, len(here) // len(made))
+        noise = ROUND_OFF * np.repeat([_largest(form, rows) for form in forms.values()], len(rows))
         for number in self.within:
             one = self.words.parameters[number]
             own, along = abs(float(x[number])), partial(self._along, x, number, tuple(made), rows)
@@ -111,3 +113,12 @@ def forms_of(system: System, names: tuple[str, ...]) -> dict[str, Form]:
 
 def _evaluated(forms: Mapping[str, Form], rows: Array) -> Array:
     return np.concatenate([np.zeros(0), *(np.asarray(form(rows), dtype=float) for form in forms.values())])
+
+
+def _largest(form: Form, rows: Array) -> float:
+    """What a signal is made of at most, of which it may be a small rest; round-off of shares was left of others."""
+    known = form.weights(rows)
+    shares = np.abs(known.values)
+    most = shares.max(initial=0.0)
+    shares = np.where((shares > 0.0) & (shares < LEFT * most), most, shares)
+    return float((shares * np.abs(rows[:, known.columns])).sum(axis=1).max(initial=0.0))

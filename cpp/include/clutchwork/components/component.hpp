@@ -275,10 +275,6 @@ concept Settling = requires(const typename E::template Params<double>& p, const 
   { E::settle(p, at) } -> std::same_as<int>;
 };
 
-/// Torque element whose torque right at a kink of its rate is another one than on both sides of it.
-template <class E>
-concept Singular = requires { requires E::singular; };
-
 /// Switching law that may leave a piece on the way back: whether a state that has just crossed goes on.
 template <class L>
 concept RunningOn = requires {

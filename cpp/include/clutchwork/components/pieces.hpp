@@ -91,10 +91,6 @@ inline bool is_settling(int kind) {
   return visit_torque(kind, [](auto tag) { return Settling<typename decltype(tag)::type>; });
 }
 
-inline bool is_singular(int kind) {
-  return visit_torque(kind, [](auto tag) { return Singular<typename decltype(tag)::type>; });
-}
-
 /// Whether a change of sign of the slip matters to the law of a branch now.
 template <class T>
 bool law_turns(const Branch<T>& b) {

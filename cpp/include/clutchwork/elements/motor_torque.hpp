@@ -24,8 +24,6 @@ struct MotorTorque : declared::MotorTorque {
     T scale;                        ///< [N m]
     T lag;                          ///< [s]
   };
-  // either way drives at rest
-  static constexpr bool singular = true;
   // by which limit the command is clipped: of torque or of power, below or above
   enum Clip : int { low_torque, low_power, free, high_torque, high_power, clips };
 
@@ -71,7 +69,7 @@ struct MotorTorque : declared::MotorTorque {
   static S margin(const Params<T>& p, const At<S>& at, int& who) {
     const Place x(p, at.piece);
     Least<S> least(who);
-    watch_clip(p, at, x, least);
+    watch_clip(p, at, x, Range<S>(p, at, x, is_held(p, at)), least);
     watch_load(p, at, x, least);
     const int n = warmths(p);
     const NumberList at_kelvin(p.derating, at.points);
@@ -85,30 +83,21 @@ struct MotorTorque : declared::MotorTorque {
     Place x(p, at.piece);
     if (who == turned) return at.piece;
     if (who < clips) x.clip = who;
+    if (who < clips && is_at_rest(p, at) && drives_at_limit(p, at, x)) turn(p, at, x);
     if (who == less || who == more) x.load += who == more ? 1 : -1;
     if (who == cooler || who == warmer) x.warmth += who == warmer ? 1 : -1;
-    return settle(p, At<T>{at.rate, at.state, at.input, x.number(p), at.points});
+    return settled(p, at, x);
   }
   template <class T>
   static bool turns(const Params<T>&, int) {
     return false;
   }
-  /// The same place as before where it may be kept.
+  /// The same place as before where it may be kept. At rest the command drives whichever way it points.
   template <class T>
   static int settle(const Params<T>& p, const At<T>& at) {
     Place x(p, at.piece);
-    const NumberList kelvin(p.derating, at.points), loads(p.torques, at.points);
-    const int n = warmths(p);
-    if (n > 1) {
-      const double warm = value(at.input[Input::temperature]);
-      x.warmth = settled_interval(warm, n - 1, x.warmth, 1e2 * border_slack, [&](int i) { return kelvin[i]; });
-    }
-    x.clip = settled_clip(p, at, x);
-    const double f = value(torque(p, At<T>{at.rate, at.state, at.input, x.number(p), at.points}));
-    const Mirrored grid{count_of(p.torques)};
-    const double slack = border_slack * value(p.scale);
-    x.load = settled_interval(f, loads_of(p) - 1, x.load, slack, [&](int i) { return grid.border(loads, i); });
-    return x.number(p);
+    if (is_at_rest(p, at)) turn(p, at, x);
+    return settled(p, at, x);
   }
 
  private:
@@ -151,22 +140,20 @@ struct MotorTorque : declared::MotorTorque {
     }
   };
 
-  /// Limits at a speed and a temperature, as sizes; those of power over it.
+  /// Limits at a speed and a temperature, as sizes; those of power over it. What is held at rest drives either way.
   template <class S>
   struct Range {
     S w, up, down, up_power, down_power;
 
     template <class T>
-    Range(const Params<T>& p, const At<S>& at, const Place& x) : w(S(x.side) * at.rate) {
+    Range(const Params<T>& p, const At<S>& at, const Place& x, bool held = false) : w(S(x.side) * at.rate) {
       const NumberList grid(p.speeds, at.points), motor(p.motoring, at.points), generator(p.generating, at.points);
       const S share = share_of_cell(grid, x.cell, w);
       const S drives = value_in_cell(grid.count, x.cell, share, [&](int i) { return motor[i]; });
       const S brakes = value_in_cell(grid.count, x.cell, share, [&](int i) { return generator[i]; });
       const S warm = at.input[Input::temperature];
       const S left = held_value(p.derating, at.points, warm, warmths(p) > 1 ? x.warmth : 0);
-      // at rest, but for round-off, either way drives, whichever piece it came from
-      const double round_off = 1e-14 * value(grid[grid.count - 1]);
-      const bool rests = abs(value(at.rate)) <= round_off, forth = rests || x.side > 0, back = rests || x.side < 0;
+      const bool forth = held || x.side > 0, back = held || x.side < 0;
       up = left * (forth ? drives : brakes), down = left * (back ? drives : brakes);
       up_power = left * S(forth ? p.motor_power : p.generator_power);
       down_power = left * S(back ? p.motor_power : p.generator_power);
@@ -174,6 +161,50 @@ struct MotorTorque : declared::MotorTorque {
     S high(bool power) const { return power ? up_power / w : up; }
     S low(bool power) const { return power ? down_power / w : down; }
   };
+
+  template <class T>
+  static int settled(const Params<T>& p, const At<T>& at, Place& x) {
+    const NumberList kelvin(p.derating, at.points), loads(p.torques, at.points);
+    const int n = warmths(p);
+    if (n > 1) {
+      const double warm = value(at.input[Input::temperature]);
+      x.warmth = settled_interval(warm, n - 1, x.warmth, 1e2 * border_slack, [&](int i) { return kelvin[i]; });
+    }
+    x.clip = settled_clip(p, at, x);
+    const double f = value(torque(p, At<T>{at.rate, at.state, at.input, x.number(p), at.points}));
+    const Mirrored grid{count_of(p.torques)};
+    const double slack = border_slack * value(p.scale);
+    x.load = settled_interval(f, loads_of(p) - 1, x.load, slack, [&](int i) { return grid.border(loads, i); });
+    return x.number(p);
+  }
+
+  /// Whether it stands, but for round-off.
+  template <class T, class S>
+  static bool is_at_rest(const Params<T>& p, const At<S>& at) {
+    const NumberList speeds(p.speeds, at.points);
+    return abs(value(at.rate)) <= 1e-14 * value(speeds[speeds.count - 1]);
+  }
+  /// Whether it stays at rest.
+  template <class T, class S>
+  static bool is_held(const Params<T>& p, const At<S>& at) {
+    constexpr double still = 1e-6;
+    if constexpr (requires { at.rate.d; }) {
+      if (abs(value(at.rate.d[0])) > still) return false;
+    }
+    return is_at_rest(p, at);
+  }
+  /// At rest: whether the command has reached what it may drive with.
+  template <class T>
+  static bool drives_at_limit(const Params<T>& p, const At<T>& at, const Place& x) {
+    const Range<T> range(p, at, x, true);
+    return abs(value(wanted(p, at))) >= value(range.up) - border_slack * value(p.scale);
+  }
+  /// From rest to the side to which the command drives.
+  template <class T>
+  static void turn(const Params<T>& p, const At<T>& at, Place& x) {
+    const bool back = value(wanted(p, at)) < 0;
+    x.speed = count_of(p.speeds) - int(back), x.side = back ? -1 : 1, x.cell = 0;
+  }
 
   /// The command where it acts.
   template <class T, class S>
@@ -197,8 +228,7 @@ struct MotorTorque : declared::MotorTorque {
   }
 
   template <class T, class S>
-  static void watch_clip(const Params<T>& p, const At<S>& at, const Place& x, Least<S>& least) {
-    const Range<S> range(p, at, x);
+  static void watch_clip(const Params<T>& p, const At<S>& at, const Place& x, const Range<S>& range, Least<S>& least) {
     const S r = wanted(p, at), unit = S(T(1) / p.scale);
     // a guard of power, in the size of a torque
     const S per_speed = unit / S(T(1) + value(range.w));

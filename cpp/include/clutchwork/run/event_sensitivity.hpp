@@ -27,17 +27,6 @@ void motion_now(Form& form, const T* y, const T* algebraic, T* out) {
   }
 }
 
-/// The same so long before, or behind, where the motion is another one on both sides of the present instant, and none
-/// of them right at it.
-template <class Form, class T = typename Form::Scalar>
-void motion_beside(Form& form, Step<Form>& step, const T* algebraic, double aside, T* out) {
-  motion_now(form, step.y0(), algebraic, out);
-  if (aside == 0) return;
-  T* beside = step.k(1);
-  for (int i = 0; i < form.n(); ++i) beside[i] = T(value(step.y0()[i]) + aside * value(out[i]));
-  motion_now(form, beside, algebraic, out);
-}
-
 /// Angles and work at the present instant move by their rates times `by`.
 template <class Form, class T = typename Form::Scalar>
 void move_integrals(Form& form, Step<Form>& step, const T& by) {
@@ -60,13 +49,13 @@ void move_integrals(Form& form, Step<Form>& step, const T& by) {
 
 /// From the derivatives at the instant of an event to those at the event, which moves. docs/theory/gradients.md (4)
 template <class Form, class T = typename Form::Scalar>
-void move_with(Form& form, Step<Form>& step, const T& shift, const T* algebraic = nullptr, double aside = 0) {
+void move_with(Form& form, Step<Form>& step, const T& shift, const T* algebraic = nullptr) {
   Workspace<T>& ws = form.ws;
-  ws.moved.shift = T(0), ws.moved.aside = aside;
+  ws.moved.shift = T(0);
   ws.moved.here = shift, ws.moved.here_time = ws.time;
   if (is_zero(shift)) return;
   T* velocity = step.k(0);
-  motion_beside(form, step, algebraic, -aside, velocity);
+  motion_now(form, step.y0(), algebraic, velocity);
   if (ws.options.angles || ws.options.work) move_integrals(form, step, shift);
   for (int i = 0; i < form.n(); ++i) step.y0()[i] += velocity[i] * shift;
   ws.moved.shift = shift;
@@ -83,7 +72,7 @@ bool leave_event(Form& form, Step<Form>& step) {
   ws.moved.shift = T(0);
   // constant signals have no part in it, those that vary are read again
   T* velocity = step.k(0);
-  motion_beside(form, step, static_cast<const T*>(nullptr), ws.moved.aside, velocity);
+  motion_now(form, step.y0(), static_cast<const T*>(nullptr), velocity);
   if (ws.options.angles || ws.options.work) move_integrals(form, step, -shift);
   for (int i = 0; i < form.n(); ++i) step.y0()[i] -= velocity[i] * shift;
   ws.in.time = -infinity;
@@ -320,12 +309,7 @@ void move_to_hit(Form& form, Step<Form>& step, const Hit& hit) {
   motion_now(form, step.y0(), algebraic, velocity);
   GuardList::visit(hit.what, [&](auto tag) {
     using G = typename decltype(tag)::type;
-    double aside = 0;
-    if constexpr (requires { G::aside(form, hit, velocity); }) {
-      aside = G::aside(form, hit, velocity);
-      if (aside > 0) motion_beside(form, step, algebraic, -aside, velocity);
-    }
-    move_with(form, step, hit_shift<G>(form, step, hit, velocity), algebraic, aside);
+    move_with(form, step, hit_shift<G>(form, step, hit, velocity), algebraic);
   });
 }
 

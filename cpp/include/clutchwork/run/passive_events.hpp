@@ -59,7 +59,7 @@ bool knot_decides(Workspace<T>& ws) {
   keep_prescribed(ws);
   keep_ratios(ws);
   load_inputs(ws, ws.time);
-  settle_pieces(ws);
+  if (settle_pieces(ws)) list_lines(ws);
   bool decide = refresh_loads(ws) || ratios_jump(ws);
   for (int p = 0; p < ws.sys.prescribed; ++p)
     decide = decide || value(ws.in.prescribed[p] - ws.in.prescribed_before[p]) != 0;

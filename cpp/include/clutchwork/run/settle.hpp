@@ -32,14 +32,18 @@ void settle_locked(Workspace<T>& ws) {
   }
 }
 
-/// The same inside a phase, where inputs have jumped and rates have not.
+/// The same inside a phase, where inputs have jumped and rates have not. Whether an element goes to another piece.
 template <class T>
-void settle_pieces(Workspace<T>& ws) {
+bool settle_pieces(Workspace<T>& ws) {
+  bool any = false;
   for (int i = 0; i < ws.guard.n_switching; ++i) {
     Branch<T>& b = ws.branch[ws.guard.switching[i]];
-    ws.piece[b.direction] = b.piece = settled_piece(ws, b, PresentRates<T>(ws, b).at);
+    const int piece = settled_piece(ws, b, PresentRates<T>(ws, b).at);
+    any = any || piece != b.piece;
+    ws.piece[b.direction] = b.piece = piece;
   }
   settle_locked(ws);
+  return any;
 }
 
 }  // namespace clutchwork

@@ -34,7 +34,6 @@ struct Moved {
   T shift = T(0);                   ///< [s] derivatives of the present instant while an event is settled
   T here = T(0);                    ///< those of the event or knot met last, the start of the run before the first
   double here_time = -infinity;     ///< [s] of it
-  double aside = 0;                 ///< [s] how long before and behind it the motion is taken
   T last = T(0);                    ///< those of the event before
   double last_time = -infinity;     ///< [s] of the event before
   T* event = nullptr;               ///< of each event in the buffer

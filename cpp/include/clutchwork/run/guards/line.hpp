@@ -173,17 +173,6 @@ struct LineCrossing {
     slope = guard.sign * value(form.rate(guard.branch, velocity));
     return form.ws.sys.prescribed == 0;
   }
-  /// How long before and behind a kink a torque that is another one right at it is that of its side; else 0.
-  template <class Form, class T = typename Form::Scalar>
-  static double aside(Form& form, const Hit& hit, const T* velocity) {
-    constexpr double away = 1e-10;
-    const auto& ws = form.ws;
-    const LineGuard& guard = ws.guard.line[hit.index];
-    const int d = component(ws, hit);
-    if (guard.kind != LineGuard::edge || d >= ws.sys.elements || !is_singular(ws.sys.element_kind[d])) return 0;
-    const double slope = abs(value(form.rate(guard.branch, velocity)));
-    return slope > 0 ? away * larger(abs(guard.level), 1.0) / slope : 0.0;
-  }
   template <class T>
   static int component(const Workspace<T>& ws, const Hit& hit) {
     return ws.branch[ws.guard.line[hit.index].branch].direction;
