@@ -286,14 +286,16 @@ void jump(Workspace<T>& ws) {
   keep_prescribed(ws);
 }
 
-/// When contacts were let go from rest last. docs/theory/contacts.md, rule 10
+/// When contacts were let go from rest last; one that an impulse has turned since then has left it.
+/// docs/theory/contacts.md, rule 10
 template <class T>
 void note_let_go(Workspace<T>& ws) {
   const double tolerance = slip_tolerance(ws);
   for (int c = 0; c < ws.sys.contacts; ++c) {
     const int mode = ws.contact.mode[c];
     if (is_stop(ws, c) || (mode != forward && mode != backward)) continue;
-    if (abs(value(rate_of(ws, int(ws.sys.elements) + c))) <= tolerance) ws.contact.met_at[c] = ws.time;
+    const bool rests = abs(value(rate_of(ws, int(ws.sys.elements) + c))) <= tolerance;
+    if (rests || mode == -ws.event_context.mode[c]) ws.contact.met_at[c] = rests ? ws.time : -infinity;
   }
 }
 
@@ -304,6 +306,8 @@ Status switch_modes(Workspace<T>& ws) {
   const bool at_start = ws.event_context.cause == Cause::initial;
   // bounces end by their own rule. docs/theory/play.md, rule 2
   const bool bounces = ws.event_context.cause == Cause::impact && ws.time > ws.contact.met_at[located];
+  // and with them what they turn around again and again
+  if (bounces) ws.events.crowd_time = -infinity;
   if (located >= 0 && !bounces && events_crowd(ws, ne + located)) return crowded(ws);
   for (int c = 0; c < ws.sys.contacts; ++c) ws.contact.struck[c] = 0;
   ws.detail.component = located >= 0 ? ne + located : -1;
