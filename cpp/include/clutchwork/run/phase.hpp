@@ -351,8 +351,9 @@ class Phase : public StepSize<typename Form::Scalar> {
       error_ = much_missed, reject_and_shrink();
     } else if (misses_rest(hit)) {
       reject_and_shrink();
-    } else if (Form::full && hit.none() && taken_form().ws.ratios.jammed >= 0) {
-      jam(taken_form().ws.ratios.jammed);
+    } else if (Form::full && taken_form().ws.ratios.jammed >= 0) {
+      // whatever comes first ends a step of its own: this one has lost a speed
+      hit.none() ? jam(taken_form().ws.ratios.jammed) : (error_ = much_missed, reject_and_shrink());
     } else if (is_written || reach(hit.s)) {
       hit.none() ? accept() : meet(hit);
       return is_written;
