@@ -67,23 +67,6 @@ bool takes_back_stops(Workspace<T>& ws) {
   return any;
 }
 
-/// Whether the torque of an element jumps between two of its pieces at the present rate, or right beside it: at rest
-/// both may have that of rest.
-template <class T>
-bool jumps_between(Workspace<T>& ws, int d, int piece, int side) {
-  Branch<T> b = make_branch(ws, d, 0);
-  auto jumps = [&](const T& rate, double least) {
-    auto torque = [&](int at) {
-      b.piece = at;
-      return value(branch_torque_once(ws, b, rate, ws.state, ws.observed.state_rates));
-    };
-    const double here = torque(piece), there = torque(piece + side);
-    return abs(there - here) > least * larger(abs(here), abs(there));
-  };
-  const T rate = rate_of(ws, d);
-  return jumps(rate, 1e-9) || jumps(rate + T(side * slip_tolerance(ws)), 1e-6);
-}
-
 /// How a contact that is at its limit and starts to slip moves direction d, however little there is to move it yet.
 template <class T>
 double breaks_away(Workspace<T>& ws, int d) {
@@ -118,12 +101,9 @@ int entered_piece(Workspace<T>& ws, int d) {
 /// be decided anew. docs/theory/events.md, rule 17
 template <class T>
 bool enter_pieces(Workspace<T>& ws) {
-  auto may_jump = [&](int d) {
-    return ws.sys.element_way[d] == 0 && ways_of(ws.sys.element_kind[d]) == 1 && edge_count(ws, d) > 0;
-  };
   bool looked = false, any = false;
   for (int d = 0; d < ws.sys.elements; ++d) {
-    if (!may_jump(d)) continue;
+    if (!may_jump(ws, d)) continue;
     if (!looked) accelerations_after(ws), looked = true;
     const int piece = entered_piece(ws, d);
     any = any || piece != ws.piece[d];

@@ -124,6 +124,8 @@ T level_of(const Workspace<T>& ws, const LineGuard& guard) {
 struct LineCrossing {
   static constexpr const char* name = "line";
   static constexpr Effect effect = Effect::decides;
+  // rate over which a torque right at a kink is that of neither side
+  static constexpr double away = 1e-10;
 
   template <class T>
   static bool watches(const Workspace<T>& ws) {
@@ -150,8 +152,18 @@ struct LineCrossing {
       if constexpr (Form::full) {
         if (ws.ratios.n > 0 && s > 0 && s < 1) s = crossing_on_ties(form, step, g, noise, s);
       }
-      if (hit.take(s, i)) hit.rough = rough;
+      if (hit.take(s, i)) hit.rough = rough, hit.s = before_rest(ws, g, step.h, s);
     }
+  }
+  /// A kink right at which a torque is another one is met a little before it: the row there has that of its side.
+  template <class T>
+  static double before_rest(const Workspace<T>& ws, const LineGuard& guard, double h, double s) {
+    const int d = ws.branch[guard.branch].direction;
+    if (guard.kind != LineGuard::edge || d >= ws.sys.elements || !is_singular(ws.sys.element_kind[d])) return s;
+    const double slope =
+        larger(abs(value(ws.step_start.slope[guard.branch])), abs(value(ws.step_end.slope[guard.branch])));
+    const double before = s - away * larger(abs(guard.level), 1.0) / (slope * h);
+    return before > 0 ? before : s;
   }
   template <class Form, class T = typename Form::Scalar>
   static T at(Form& form, Step<Form>&, const Hit& hit, double t, const T* y, int&) {
@@ -176,7 +188,6 @@ struct LineCrossing {
   /// How long before and behind a kink a torque that is another one right at it is that of its side; else 0.
   template <class Form, class T = typename Form::Scalar>
   static double aside(Form& form, const Hit& hit, const T* velocity) {
-    constexpr double away = 1e-10;
     const auto& ws = form.ws;
     const LineGuard& guard = ws.guard.line[hit.index];
     const int d = component(ws, hit);
@@ -198,8 +209,11 @@ struct LineCrossing {
       if (!pass_law(phase.form(), phase.step(), guard.branch, hit.who)) return phase.leave(Status::zeno);
       return phase.go_on(true);
     }
+    const int d = component(ws, hit);
+    const bool jumps =
+        guard.kind == LineGuard::edge && may_jump(ws, d) && jumps_between(ws, d, ws.piece[d], guard.sign < 0 ? 1 : -1);
     pass_line(phase.form(), guard);
-    phase.go_on(false);
+    phase.go_on(jumps);
   }
 };
 
