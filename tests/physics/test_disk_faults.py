@@ -55,10 +55,11 @@ def test_time_and_signal_together_trigger_at_the_earlier_instant() -> None:
 
 
 @feature("faults: cannot unlock")
-def test_a_clutch_that_cannot_unlock_slips_until_it_locks_for_good() -> None:
+@pytest.mark.parametrize("trigger", [{"fault_time": 0.2}, {"fault_signal": cw.Table([(0.0, 0.0), (0.4, 1.0)])}])
+def test_a_clutch_that_cannot_unlock_slips_until_it_locks_for_good(trigger: dict[str, Any]) -> None:
     """It fails while it slips, locks as it would, and then holds with its pressure gone."""
     pressure = cw.Table([(0.0, 2e5), (1.0, 2e5), (1.0, 0.0), (2.0, 0.0)])
-    d = faulty(fault="cannot_unlock", fault_time=0.2, pressure=pressure)
+    d = faulty(fault="cannot_unlock", pressure=pressure, **trigger)
     d.add(cw.Torque("pull", shaft=d.nodes[1], torque=cw.Table([(0.0, 0.0), (1.2, 0.0), (1.3, 90.0), (2.0, 90.0)])))
     run = d.simulate(1.6, **TIGHT)
     assert_switches(run, [(REDUCED * W0 / (0.3 * GAIN * 2e5), "c1", "forward", "locked")])

@@ -211,6 +211,25 @@ def test_mistakes_are_named(values, words):
         d.assemble()
 
 
+@pytest.mark.parametrize(
+    ("values", "words"),
+    [
+        ({"stall_speed": 40.0}, r"stall_speed.*40\.0 rad/s, which is none of speeds"),
+        ({"limiter": "band", "max_speed": 50.0, "limit_band": 8.0}, r"limit_band.*42\.0 rad/s"),
+        ({"limiter": "band", "max_speed": 120.0, "limit_band": 20.0}, r"max_speed.*120\.0 rad/s"),
+    ],
+    ids=str,
+)
+def test_borders_of_the_part_are_on_its_grid(values, words):
+    """Between two speeds of its grid the limiter, and the stall, would begin at one of them: with a jump."""
+    d = cw.Driveline()
+    grid = {"speeds": (0.0, 50.0, 100.0), "throttles": (0.0, 1.0), "deficit": (0.0,) * 3}
+    rest = {"torques": ((0.0, 9.0),) * 3, "orders": (1.0,), "amplitudes": (0.0,), "phases": (0.0,), "throttle": 1.0}
+    d.add(cw.EngineTorque("e", shaft=d.shaft("s", inertia=1.0), **grid, **rest, **values))
+    with pytest.raises(cw.ModelError, match=words):
+        d.assemble()
+
+
 def test_the_band_of_the_ripple_is_that_of_the_core():
     # the composite has a knot of its map where the ripple of the part ends
     header = (ROOT / "cpp/include/clutchwork/elements/engine_torque.hpp").read_text(encoding="utf-8")

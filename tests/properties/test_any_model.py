@@ -191,6 +191,12 @@ MENDED: dict[str, list[int]] = {
     "a gear that locks itself behind a ratio that passes zero": [13003685],
     "a speed that others are lost beside for an instant": [13005477],
     "a slip and a store within the tolerance": [9000783, 15001946, 13000781, 17001538, 9004018],
+    "a contact that bounces turned around, again and again": [19005065, 19001825],
+    "a contact that cannot unlock and had not come to rest": [19017977],
+    "an event of a step in which a ratio lost a speed": [19011769, 19017326],
+    "a load that turned with the torque of a motor, right at its rest": [19000770],
+    "a load of what slides, by the shares of what is held": [19014783],
+    "a gear whose efficiency comes down to zero": [19000395],
 }
 
 

@@ -23,7 +23,7 @@ from clutchwork.declare import (
 )
 from clutchwork.elements.bases.grids import Grid, Pairs, at_each, resampled, shape_problems, union
 from clutchwork.elements.bearing_friction import BearingFriction
-from clutchwork.elements.engine_torque import EngineTorque
+from clutchwork.elements.engine_torque import NO_LIMIT, EngineTorque
 from clutchwork.laws.coulomb import Coulomb
 
 # speeds [rad/s] above the stall speed over which a ripple comes in that makes the burning part negative
@@ -221,7 +221,7 @@ class Engine(Component):
             idle_integral=self.idle_integral,
             idle_limit=self.idle_limit,
             limiter="none" if self.max_speed is None else "cut" if self.cut else "band",
-            max_speed=self.max_speed or 1e9,
+            max_speed=self.max_speed or NO_LIMIT,
             limit_band=self.limit_band,
             charged=self.naturally_aspirated is not None,
             boost_lag=self.boost_lag,

@@ -24,6 +24,8 @@ from clutchwork.declare import (
 from clutchwork.elements.bases.grids import shape_problems
 from clutchwork.elements.bases.ratios import angle_of
 
+# rad/s, a limit that is none
+NO_LIMIT = 1e9
 STATES = (
     State("opening", "1", "throttle behind its lag"),
     State("idle", "1", "integral of the idle control"),
@@ -73,7 +75,7 @@ class EngineTorque(Component):
     idle_integral: float = param("1/rad", "rate of the throttle over the missing speed", default=0.0, at_least=0.0)
     idle_limit: float = param("1", "largest throttle of the idle control", default=1.0, above=0.0)
     limiter: str = choice("how the speed is limited", choices=("none", "band", "cut"), default="none")
-    max_speed: float = param("rad/s", "speed that it is limited to", default=1e9, above=0.0)
+    max_speed: float = param("rad/s", "speed that it is limited to", default=NO_LIMIT, above=0.0)
     limit_band: float = param("rad/s", "band below it, or hysteresis of the cut", default=1.0, above=0.0)
     charged: bool = flag("whether it has boost", default=False)
     boost_lag: float = param("s", "time constant of the boost", default=1.0, above=0.0)
@@ -106,6 +108,14 @@ class EngineTorque(Component):
             if len(values) != len(self.orders):
                 fault = f"has {len(values)} values for {len(self.orders)} orders"
                 found.append((name, fault, "give one for each order"))
+        # what begins between two speeds would begin at one of them
+        borders = [("stall_speed", self.stall_speed)]
+        if self.limiter == "band" and self.max_speed < NO_LIMIT:
+            begin = max(self.max_speed - self.limit_band, 0.0)
+            borders += [("limit_band", begin), ("max_speed", self.max_speed)]
+        for name, x in borders:
+            if x not in self.speeds:
+                found.append((name, f"has a border at {float(x)!r} rad/s, which is none of speeds", "add it to speeds"))
         if self.governed and self.initial_idle > self.idle_limit:
             fault = f"is {self.initial_idle:g}, above idle_limit {self.idle_limit:g}"
             found.append(("initial_idle", fault, "start at or below the limit"))

@@ -49,8 +49,10 @@ Choice choice_of(Workspace<T>& ws, int c, double slip, double tolerance, bool hi
     mode = forced = parting < 0 ? backward : forward;
     return Choice::slips;
   }
+  // where a load turns, or a contact fails, its slip has not vanished
+  const Cause cause = ws.event_context.cause;
   const bool still = mode == locked && !rigid,
-             arrived = hit && ws.event_context.cause != Cause::input && (!rigid || is_tied(ws, c));
+             arrived = hit && cause != Cause::input && cause != Cause::fault && (!rigid || is_tied(ws, c));
   const bool rests = still || arrived || abs(slip) <= tolerance;
   if (rests && forced == 0) return Choice::sticks;
   mode = rests ? forced : slip > 0 ? forward : backward;

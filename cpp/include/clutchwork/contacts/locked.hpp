@@ -271,13 +271,17 @@ void list_driven(Workspace<T>& ws) {
 }
 
 /// Sort the locked contacts into independent and redundant ones; all of them are independent where no directions depend
-/// on others.
+/// on others. The torques of the independent ones make the loads: those that follow loads are the last of them.
 template <class T>
 void list_locked(Workspace<T>& ws) {
   Held<T>& h = ws.held;
   int n = 0;
-  for (int c = 0; c < ws.sys.contacts; ++c) {
-    if (ws.contact.mode[c] == locked) h.in_set[n] = 0, h.all[n] = h.contact[n] = c, ++n;
+  const bool apart = ws.sys.loads > 0 && ws.geometry.redundant;
+  for (int follow = 0; follow <= int(apart); ++follow) {
+    for (int c = 0; c < ws.sys.contacts; ++c) {
+      if (ws.contact.mode[c] != locked || (apart && int(ws.loads.of[c] >= 0) != follow)) continue;
+      h.in_set[n] = 0, h.all[n] = h.contact[n] = c, ++n;
+    }
   }
   h.n = h.n_fixed = n;
   h.n_redundant = h.n_sets = h.n_driven = 0;
@@ -432,6 +436,24 @@ T solve_at_limit(LoadedLimit<T>& limit) {
   return factor;
 }
 
+/// Whether a set goes on as it moves what slips and follows loads: its independent contacts hold its load, which alone
+/// count there, without the redundant ones. docs/theory/load-dependent.md, rule 3
+template <class T>
+bool holds_as_moved(const Workspace<T>& ws, const DependentSet<T>& set, const int* member) {
+  bool slides = false;
+  for (int l = 0; l < ws.sys.loads; ++l) {
+    const int mode = ws.contact.mode[ws.sys.load_contact[l]];
+    slides = slides || mode == forward || mode == backward;
+  }
+  for (int i = 0; i < set.n && slides; ++i) {
+    const int l = ws.loads.of[member[i]];
+    auto most = [&](int way) { return bound_of(ws, member[i], way, T(0), 0).at(ws.loads.now[l]); };
+    const T torque = i < set.rank ? set.load[i] : T(0);
+    slides = torque >= (l < 0 ? set.lower[i] : -most(forward)) && torque <= (l < 0 ? set.upper[i] : most(backward));
+  }
+  return slides;
+}
+
 /// Torques of all contacts of set k in place of those of its independent contacts: `give` takes contact and torque.
 template <class T, class Give>
 void share_load(Workspace<T>& ws, int k, const T* carried, Give&& give) {
@@ -441,8 +463,9 @@ void share_load(Workspace<T>& ws, int k, const T* carried, Give&& give) {
     outer_loads(ws, k, ws.loads.now, carried);
     LoadedLimit<T> limit = loaded_limit(ws, set, member, T(0));
     // what holds the largest multiple of the load holds the load in proportion
-    const T factor = solve_at_limit(limit);
-    if (value(limit.size) > 0 && !(value(factor) > 0)) {
+    const bool moved = holds_as_moved(ws, set, member);
+    const T factor = moved ? T(0) : solve_at_limit(limit);
+    if (moved || (value(limit.size) > 0 && !(value(factor) > 0))) {
       for (int i = 0; i < set.n; ++i) give(member[i], i < set.rank ? set.load[i] : T(0));
       return;
     }

@@ -131,6 +131,20 @@ int runs_away(const Workspace<T>& ws) {
   return found;
 }
 
+/// A contact that slips with a load of which next to nothing goes on, for its efficiency has come down to zero where it
+/// was evaluated last; -1: none. docs/theory/load-dependent.md, rule 4
+template <class T>
+int takes_all(const Workspace<T>& ws) {
+  constexpr double much = 1e6;
+  for (int i = 0; i < ws.loads.n_sliding; ++i) {
+    const int c = ws.sys.load_contact[ws.loads.sliding[i]], sign = ws.contact.mode[c];
+    const T slip = T(sign) * ws.full.plain.rate[ws.loads.branch[i]];
+    const Bound<T> bound = bound_of(ws, c, sign, slip, ws.piece[ws.sys.elements + c]);
+    if (larger(abs(value(bound.slope[0])), abs(value(bound.slope[1]))) > much) return c;
+  }
+  return -1;
+}
+
 /// Size of the torques of the branches where they were looked at last.
 template <class T>
 double torque_size(const Workspace<T>& ws) {

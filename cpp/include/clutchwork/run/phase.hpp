@@ -103,6 +103,10 @@ class Phase : public StepSize<typename Form::Scalar> {
       }
       if (lost >= 0) return jam(lost);
       if (ws_.loads.n_sliding > 0 && stops_running_away()) return;
+      if (const int c = takes_all(ws_); c >= 0) {
+        ws_.detail.component = int(ws_.sys.elements) + c;
+        return leave(Status::unbalanced);
+      }
     }
     blame(form_, step_);
     leave(ws_.detail.component >= 0 || !(error_ <= 1e300) ? Status::not_finite : Status::step_collapse);
@@ -351,8 +355,9 @@ class Phase : public StepSize<typename Form::Scalar> {
       error_ = much_missed, reject_and_shrink();
     } else if (misses_rest(hit)) {
       reject_and_shrink();
-    } else if (Form::full && hit.none() && taken_form().ws.ratios.jammed >= 0) {
-      jam(taken_form().ws.ratios.jammed);
+    } else if (Form::full && taken_form().ws.ratios.jammed >= 0) {
+      // whatever comes first ends a step of its own: this one has lost a speed
+      hit.none() ? jam(taken_form().ws.ratios.jammed) : (error_ = much_missed, reject_and_shrink());
     } else if (is_written || reach(hit.s)) {
       hit.none() ? accept() : meet(hit);
       return is_written;
@@ -368,7 +373,9 @@ class Phase : public StepSize<typename Form::Scalar> {
   bool stops_running_away() {
     evaluate(form_, ws_.time, step_.y0(), step_.slope());
     const int c = runs_away(ws_);
-    if (c < 0 || events_crowd(ws_, int(ws_.sys.elements) + c)) return false;
+    if (c < 0) return false;
+    // what is driven on cannot be stopped
+    if (events_crowd(ws_, int(ws_.sys.elements) + c)) return leave(Status::unbalanced), true;
     rest_step(form_, step_);
     export_state(form_, step_.y0());
     note_before(form_, step_, 0.0);

@@ -1,5 +1,7 @@
 #pragma once
+#include <clutchwork/components/branch.hpp>
 #include <clutchwork/components/direction.hpp>
+#include <clutchwork/components/kinds.hpp>
 #include <clutchwork/components/pieces.hpp>
 #include <clutchwork/contacts/sticking.hpp>
 #include <clutchwork/workspace.hpp>
@@ -20,6 +22,30 @@ void find_pieces(Workspace<T>& ws) {
     const Branch<T> b = make_branch(ws, d, 0);
     ws.piece[d] = settled_piece(ws, b, PresentRates<T>(ws, b).at);
   }
+}
+
+/// Whether element d has one way, and kinks at which its torque may jump.
+template <class T>
+bool may_jump(const Workspace<T>& ws, int d) {
+  return d < ws.sys.elements && ws.sys.element_way[d] == 0 && ways_of(ws.sys.element_kind[d]) == 1 &&
+         edge_count(ws, d) > 0;
+}
+
+/// Whether the torque of an element jumps between two of its pieces at the present rate, or right beside it: at rest
+/// both may have that of rest.
+template <class T>
+bool jumps_between(Workspace<T>& ws, int d, int piece, int side) {
+  Branch<T> b = make_branch(ws, d, 0);
+  auto jumps = [&](const T& rate, double least) {
+    auto torque = [&](int at) {
+      b.piece = at;
+      return value(branch_torque_once(ws, b, rate, ws.state, ws.observed.state_rates));
+    };
+    const double here = torque(piece), there = torque(piece + side);
+    return abs(there - here) > least * larger(abs(here), abs(there));
+  };
+  const T rate = rate_of(ws, d);
+  return jumps(rate, 1e-9) || jumps(rate + T(side * slip_tolerance(ws)), 1e-6);
 }
 
 /// Locked contacts whose laws have pieces are on those that hold what they see now.

@@ -67,23 +67,6 @@ bool takes_back_stops(Workspace<T>& ws) {
   return any;
 }
 
-/// Whether the torque of an element jumps between two of its pieces at the present rate, or right beside it: at rest
-/// both may have that of rest.
-template <class T>
-bool jumps_between(Workspace<T>& ws, int d, int piece, int side) {
-  Branch<T> b = make_branch(ws, d, 0);
-  auto jumps = [&](const T& rate, double least) {
-    auto torque = [&](int at) {
-      b.piece = at;
-      return value(branch_torque_once(ws, b, rate, ws.state, ws.observed.state_rates));
-    };
-    const double here = torque(piece), there = torque(piece + side);
-    return abs(there - here) > least * larger(abs(here), abs(there));
-  };
-  const T rate = rate_of(ws, d);
-  return jumps(rate, 1e-9) || jumps(rate + T(side * slip_tolerance(ws)), 1e-6);
-}
-
 /// How a contact that is at its limit and starts to slip moves direction d, however little there is to move it yet.
 template <class T>
 double breaks_away(Workspace<T>& ws, int d) {
@@ -118,12 +101,9 @@ int entered_piece(Workspace<T>& ws, int d) {
 /// be decided anew. docs/theory/events.md, rule 17
 template <class T>
 bool enter_pieces(Workspace<T>& ws) {
-  auto may_jump = [&](int d) {
-    return ws.sys.element_way[d] == 0 && ways_of(ws.sys.element_kind[d]) == 1 && edge_count(ws, d) > 0;
-  };
   bool looked = false, any = false;
   for (int d = 0; d < ws.sys.elements; ++d) {
-    if (!may_jump(d)) continue;
+    if (!may_jump(ws, d)) continue;
     if (!looked) accelerations_after(ws), looked = true;
     const int piece = entered_piece(ws, d);
     any = any || piece != ws.piece[d];
@@ -286,14 +266,16 @@ void jump(Workspace<T>& ws) {
   keep_prescribed(ws);
 }
 
-/// When contacts were let go from rest last. docs/theory/contacts.md, rule 10
+/// When contacts were let go from rest last; one that an impulse has turned since then has left it.
+/// docs/theory/contacts.md, rule 10
 template <class T>
 void note_let_go(Workspace<T>& ws) {
   const double tolerance = slip_tolerance(ws);
   for (int c = 0; c < ws.sys.contacts; ++c) {
     const int mode = ws.contact.mode[c];
     if (is_stop(ws, c) || (mode != forward && mode != backward)) continue;
-    if (abs(value(rate_of(ws, int(ws.sys.elements) + c))) <= tolerance) ws.contact.met_at[c] = ws.time;
+    const bool rests = abs(value(rate_of(ws, int(ws.sys.elements) + c))) <= tolerance;
+    if (rests || mode == -ws.event_context.mode[c]) ws.contact.met_at[c] = rests ? ws.time : -infinity;
   }
 }
 
@@ -304,6 +286,8 @@ Status switch_modes(Workspace<T>& ws) {
   const bool at_start = ws.event_context.cause == Cause::initial;
   // bounces end by their own rule. docs/theory/play.md, rule 2
   const bool bounces = ws.event_context.cause == Cause::impact && ws.time > ws.contact.met_at[located];
+  // and with them what they turn around again and again
+  if (bounces) ws.events.crowd_time = -infinity;
   if (located >= 0 && !bounces && events_crowd(ws, ne + located)) return crowded(ws);
   for (int c = 0; c < ws.sys.contacts; ++c) ws.contact.struck[c] = 0;
   ws.detail.component = located >= 0 ? ne + located : -1;

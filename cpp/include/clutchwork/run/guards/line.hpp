@@ -187,8 +187,11 @@ struct LineCrossing {
       if (!pass_law(phase.form(), phase.step(), guard.branch, hit.who)) return phase.leave(Status::zeno);
       return phase.go_on(true);
     }
+    const int d = component(ws, hit);
+    const bool jumps =
+        guard.kind == LineGuard::edge && may_jump(ws, d) && jumps_between(ws, d, ws.piece[d], guard.sign < 0 ? 1 : -1);
     pass_line(phase.form(), guard);
-    phase.go_on(false);
+    phase.go_on(jumps);
   }
 };
 
