@@ -7,7 +7,7 @@ The fields of `Options` are the table of all options. What checks them, the comm
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import fields, replace
+from dataclasses import fields
 from math import inf
 from typing import TYPE_CHECKING, Any, Literal, Unpack, get_args
 
@@ -127,14 +127,11 @@ class Options:
 
     def __post_init__(self) -> None:
         """Put values with units into SI; refuse those that make no sense, with what to write instead, all at once."""
-        for name, row in OPTIONS.items():
-            if (value := getattr(self, name)) is not row.default:
-                vars(self)[name] = row.in_si(value)
-        found = [
-            fault
-            for name, row in OPTIONS.items()
-            if (value := getattr(self, name)) is not row.default and (fault := _told(name, row, value))
-        ]
+        values = vars(self)
+        given = [(name, row) for name, row in OPTIONS.items() if values[name] is not row.default]
+        for name, row in given:
+            values[name] = row.in_si(values[name])
+        found = [fault for name, row in given if (fault := _told(name, row, values[name]))]
         if self.dt is not None and self.times is not None:
             found.append(f"dt and times are both given: {ONE_GRID}")
         if found:
@@ -143,7 +140,7 @@ class Options:
     def changed(self, changes: Mapping[str, Any]) -> Options:
         """These options with some replaced; an unknown name is a UseError, a TypeError, with a near match."""
         known(changes)
-        return replace(self, **changes) if changes else self
+        return Options(**{**vars(self), **changes}) if changes else self
 
     def core_options(self) -> dict[str, float]:
         """The options that the compiled core knows, as its numbers."""

@@ -56,9 +56,11 @@ def put(run: Any, system: System, state: State) -> None:
 
 def choose(run: Any, options: Options) -> None:
     """Give a run its options; what was done before it began does not count against its budgets."""
-    before = run.statistics()
-    for name, value in options.core_options().items():
-        run.set_option(name, value + sum(before[counter] for counter in BUDGETS.get(name, ())))
+    before, values = run.statistics(), options.core_options()
+    for name, counters in BUDGETS.items():
+        values[name] += sum(before[counter] for counter in counters)
+    for name, value in values.items():
+        run.set_option(name, value)
 
 
 def state_of(
