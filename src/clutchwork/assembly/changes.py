@@ -29,7 +29,7 @@ from clutchwork.model.problems import TOO_FAR_APART
 from clutchwork.model.temperatures import temperature_advice
 
 if TYPE_CHECKING:
-    from clutchwork.assembly.records import Array
+    from clutchwork.base.arrays import Array
     from clutchwork.base.errors import Problem as Found
     from clutchwork.declare.schema import Spec
 

@@ -13,9 +13,10 @@ import numpy as np
 
 from clutchwork.assembly.dependence import dependent_sets
 from clutchwork.assembly.patches import Numbered, numbered
-from clutchwork.assembly.records import TYPES, Array, Gearing, Input, Link, frozen
+from clutchwork.assembly.records import TYPES, Gearing, Input, Link, frozen
 from clutchwork.assembly.sparse import dense, entries
 from clutchwork.assembly.storage_bounds import rooms
+from clutchwork.base.arrays import Array
 from clutchwork.base.classes import dataclass
 from clutchwork.base.errors import ModelError, near
 from clutchwork.base.plural import counted

@@ -6,8 +6,8 @@ from functools import cached_property
 from typing import TYPE_CHECKING
 
 import numpy as np
-from numpy.typing import NDArray
 
+from clutchwork.base.arrays import Array
 from clutchwork.calibration.outcome import FEASIBLE
 from clutchwork.calibration.rows import ConstraintBlock, Row
 from clutchwork.calibration.scaled import Samples, Scaled
@@ -15,7 +15,6 @@ from clutchwork.calibration.scaled import Samples, Scaled
 if TYPE_CHECKING:
     from clutchwork.calibration.evaluate import Evaluation
 
-Array = NDArray[np.float64]
 # limits count as held with so much to spare, in shares of their scale
 SPARE = 1e-3
 # or with so much of the band between two bounds

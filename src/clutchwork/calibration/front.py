@@ -8,8 +8,8 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from numpy.typing import NDArray
 
+from clutchwork.base.arrays import Array
 from clutchwork.base.classes import dataclass
 from clutchwork.base.errors import UseError
 from clutchwork.base.extras import need
@@ -27,7 +27,6 @@ if TYPE_CHECKING:
     from clutchwork.calibration.limits import Settled
     from clutchwork.plot.canvas import Picture
 
-Array = NDArray[np.float64]
 HEIGHT = 80.0  # mm
 
 

@@ -6,8 +6,8 @@ from collections.abc import Mapping
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from numpy.typing import NDArray
 
+from clutchwork.base.arrays import Array
 from clutchwork.base.classes import dataclass
 from clutchwork.base.errors import UseError
 from clutchwork.base.quote import quote
@@ -30,7 +30,6 @@ from clutchwork.sweeps.numbers import bounds, number
 if TYPE_CHECKING:
     from clutchwork.calibration.names import TimeTable
 
-Array = NDArray[np.float64]
 SUCH = "give an output such as 'c1.heat', cw.lock('c1'), cw.jerk('car'), or {output: weight, ...}"
 
 

@@ -7,8 +7,8 @@ from functools import cached_property, partial
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from numpy.typing import NDArray
 
+from clutchwork.base.arrays import Array
 from clutchwork.base.classes import dataclass
 from clutchwork.base.errors import ModelError, UseError
 from clutchwork.base.errors import Problem as Wrong
@@ -25,7 +25,6 @@ if TYPE_CHECKING:
     from clutchwork.assembly.system import System
     from clutchwork.gradients.parameters import Tunable
 
-Array = NDArray[np.float64]
 # of bounds, in shares of themselves: a start that is out by no more is at its bound
 ROUND_OFF = 1e-9
 SUCH = "{'c1.pressure.values[2:]': (0.0, 8e5)}"

@@ -8,8 +8,8 @@ from functools import cached_property
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from numpy.typing import NDArray
 
+from clutchwork.base.arrays import Array
 from clutchwork.base.classes import dataclass
 from clutchwork.base.errors import ClutchworkError
 from clutchwork.calibration.held import Held
@@ -25,8 +25,6 @@ if TYPE_CHECKING:
     from clutchwork.calibration.problem import CalibrationProblem
     from clutchwork.declare.options import Options
     from clutchwork.run.trajectory import Trajectory
-
-Array = NDArray[np.float64]
 
 
 class CalibrationError(ClutchworkError, RuntimeError):

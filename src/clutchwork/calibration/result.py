@@ -7,8 +7,8 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from numpy.typing import NDArray
 
+from clutchwork.base.arrays import Array
 from clutchwork.base.errors import UseError, near
 from clutchwork.base.quote import quote
 from clutchwork.calibration import words
@@ -28,8 +28,6 @@ if TYPE_CHECKING:
     from clutchwork.calibration.limits import Settled
     from clutchwork.calibration.search import MultiStartSearch
     from clutchwork.plot.canvas import Picture
-
-Array = NDArray[np.float64]
 
 
 class CalibrationInterrupted(KeyboardInterrupt):

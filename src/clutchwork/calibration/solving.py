@@ -6,8 +6,8 @@ from collections.abc import Iterator, Sequence
 from typing import TYPE_CHECKING
 
 import numpy as np
-from numpy.typing import NDArray
 
+from clutchwork.base.arrays import Array
 from clutchwork.base.classes import dataclass
 from clutchwork.calibration.ending import Ending
 from clutchwork.calibration.feasibility import Restoring
@@ -22,7 +22,6 @@ from clutchwork.calibration.trust_region_lp import walked
 if TYPE_CHECKING:
     from clutchwork.calibration.evaluate import Evaluator
 
-Array = NDArray[np.float64]
 # times that a search begins anew, what may be left of the gradient, and what counts as better, in shares of the goal
 MOST_AGAIN, ENOUGH, LITTLE = 3, 1e-6, 1e-3
 # the same where steps in boxes end, in a corner

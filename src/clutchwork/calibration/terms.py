@@ -9,8 +9,8 @@ from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING, Any, ClassVar, NamedTuple, Protocol, TypeAlias
 
 import numpy as np
-from numpy.typing import NDArray
 
+from clutchwork.base.arrays import Array
 from clutchwork.base.classes import dataclass
 from clutchwork.base.errors import UnknownName, UseError
 from clutchwork.calibration.names import curve
@@ -35,7 +35,6 @@ if TYPE_CHECKING:
     from clutchwork.calibration.names import TimeTable
     from clutchwork.gradients.parameters import Tunable
 
-Array = NDArray[np.float64]
 OUTPUTS = (AtEnd, AtTimes, Extreme, Integral, SquaredJerk, When)
 
 

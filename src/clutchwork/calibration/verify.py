@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
+from clutchwork.base.arrays import Array
 from clutchwork.base.classes import dataclass
 from clutchwork.base.errors import UseError
 from clutchwork.base.plural import columns
@@ -19,7 +20,6 @@ if TYPE_CHECKING:
     from clutchwork.calibration.limits import Settled
     from clutchwork.calibration.record import CalibrationRecord
 
-Array = NDArray[np.float64]
 # a limit counts as held where it is passed by less, in shares of its bound
 ALLOWED = 1e-6
 

@@ -7,8 +7,8 @@ from pathlib import Path
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
+from clutchwork.base.arrays import Array
 from clutchwork.base.errors import FileError, near
 from clutchwork.base.quote import listed, quote
 from clutchwork.fit.failure import FitError, refuse
@@ -16,8 +16,6 @@ from clutchwork.signals.bases.column_file import names_of
 from clutchwork.signals.bases.column_heads import ColumnHead, split
 from clutchwork.signals.bases.measured.formats import format_of
 from clutchwork.signals.column import Column
-
-Array = NDArray[np.float64]
 
 
 class ReadColumn(NamedTuple):

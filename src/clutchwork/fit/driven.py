@@ -6,7 +6,6 @@ from collections.abc import Iterator, Mapping, Sequence
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from clutchwork.base.classes import dataclass
 from clutchwork.base.errors import ModelError, Problem, UseError
@@ -26,7 +25,6 @@ if TYPE_CHECKING:
     from clutchwork.results.channels import Channel
     from clutchwork.run.trajectory import Trajectory
 
-Array = NDArray[np.float64]
 
 # far below what a sensor resolves
 RTOL, ATOL = 1e-9, 1e-11

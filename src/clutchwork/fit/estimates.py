@@ -6,14 +6,10 @@ from collections.abc import Sequence
 from dataclasses import field
 from typing import Any, Self
 
-import numpy as np
-from numpy.typing import NDArray
-
+from clutchwork.base.arrays import Array
 from clutchwork.base.classes import dataclass
 from clutchwork.base.errors import ClutchworkError, near
 from clutchwork.base.plural import columns
-
-Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True)

@@ -7,12 +7,11 @@ from dataclasses import field
 import numpy as np
 from numpy.typing import NDArray
 
+from clutchwork.base.arrays import Array
 from clutchwork.base.classes import dataclass
 from clutchwork.declare.node import Law
 from clutchwork.fit.estimates import ParameterEstimates
 from clutchwork.fit.measurement import Measurement
-
-Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)

@@ -7,8 +7,8 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from numpy.typing import NDArray
 
+from clutchwork.base.arrays import Array
 from clutchwork.base.plural import counted
 from clutchwork.declare.node import Law as LawBase
 from clutchwork.fit import table
@@ -34,8 +34,6 @@ from clutchwork.fit.unknowns import Unknowns
 
 if TYPE_CHECKING:
     from clutchwork.declare.node import Law
-
-Array = NDArray[np.float64]
 
 
 def fit_law(

@@ -6,12 +6,10 @@ from collections.abc import Iterator
 from itertools import combinations
 
 import numpy as np
-from numpy.typing import NDArray
 
+from clutchwork.base.arrays import Array
 from clutchwork.fit.descent import Descent
 from clutchwork.fit.readings import FITS, RPM
-
-Array = NDArray[np.float64]
 
 
 def readings(descent: Descent) -> list[str]:

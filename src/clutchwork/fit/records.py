@@ -6,9 +6,9 @@ from collections.abc import Iterator, Mapping, Sequence
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from clutchwork.assembly.system import System
+from clutchwork.base.arrays import Array
 from clutchwork.base.errors import ModelError
 from clutchwork.base.plural import counted
 from clutchwork.base.quote import quote
@@ -32,7 +32,6 @@ if TYPE_CHECKING:
     from clutchwork.fit.unknown import Pair
     from clutchwork.run.simulation import Assembles
 
-Array = NDArray[np.float64]
 
 # sums of squares that differ by less, of themselves, are those of one solution
 SAME = 1e-3

@@ -6,9 +6,6 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-import numpy as np
-from numpy.typing import NDArray
-
 from clutchwork.base.classes import dataclass
 from clutchwork.base.plural import counted
 from clutchwork.fit.estimates import ParameterEstimates
@@ -19,8 +16,6 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
     from clutchwork.run.trajectory import Trajectory
-
-Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)

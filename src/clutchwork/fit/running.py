@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from clutchwork.assembly.records import frozen
+from clutchwork.base.arrays import Array
 from clutchwork.base.errors import ModelWarning
 from clutchwork.declare.options import Options
 from clutchwork.driveline.driveline import Driveline
@@ -26,7 +27,6 @@ if TYPE_CHECKING:
     from clutchwork.declare.node import Law
     from clutchwork.fit.measurement import Measurement
 
-Array = NDArray[np.float64]
 
 RTOL, ATOL = 1e-9, 1e-11
 # a run that fails counts as so many times the largest torque off

@@ -5,8 +5,8 @@ from __future__ import annotations
 from pathlib import Path
 
 import numpy as np
-from numpy.typing import NDArray
 
+from clutchwork.base.arrays import Array
 from clutchwork.base.classes import dataclass
 from clutchwork.base.errors import near
 from clutchwork.base.quote import listed
@@ -19,8 +19,6 @@ from clutchwork.signals.bases.column_heads import meant, split
 from clutchwork.signals.bases.measured import read_columns
 from clutchwork.signals.bases.measured.formats import format_of
 from clutchwork.signals.column import Column
-
-Array = NDArray[np.float64]
 
 CLOCK = "time"
 UNITS = {"time": ("s",), "slip": ("rad/s", "m/s"), "torque": ("N m", "N"), "load": ("N m", "N"), "temperature": ("K",)}

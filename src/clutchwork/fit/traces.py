@@ -6,8 +6,8 @@ from collections.abc import Iterator, Mapping
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from numpy.typing import NDArray
 
+from clutchwork.base.arrays import Array
 from clutchwork.base.classes import dataclass
 from clutchwork.base.errors import near
 from clutchwork.base.quote import quote
@@ -18,8 +18,6 @@ from clutchwork.results.forms import Mode
 if TYPE_CHECKING:
     from clutchwork.fit.record import Record
     from clutchwork.results.channels import Channel
-
-Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True, eq=False)

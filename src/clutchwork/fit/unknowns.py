@@ -9,8 +9,8 @@ from math import inf, log
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from numpy.typing import NDArray
 
+from clutchwork.base.arrays import Array
 from clutchwork.base.errors import near
 from clutchwork.fit.adjustable import adjustable, default_free, fixed, kinetic, sum_is_held
 from clutchwork.fit.failure import FitError
@@ -19,8 +19,6 @@ from clutchwork.fit.unknown import REACH, Bounds, Unknown, below_static, unknown
 
 if TYPE_CHECKING:
     from clutchwork.declare.node import Law
-
-Array = NDArray[np.float64]
 
 
 class Unknowns:

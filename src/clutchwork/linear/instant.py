@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 
 from clutchwork.assembly.system import System
 from clutchwork.assembly.wiring import Wiring, wiring
+from clutchwork.base.arrays import Array
 from clutchwork.base.classes import dataclass
 from clutchwork.base.errors import UseError
 from clutchwork.base.quote import quote
@@ -29,7 +30,6 @@ if TYPE_CHECKING:
 
     from clutchwork.results.events import Event
 
-Array = NDArray[np.float64]
 
 CALL = "linearise"
 

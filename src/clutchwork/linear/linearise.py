@@ -6,8 +6,8 @@ from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from numpy.typing import NDArray
 
+from clutchwork.base.arrays import Array
 from clutchwork.base.errors import UseError
 from clutchwork.declare.calls import explained
 from clutchwork.linear.chosen import Excitation, chosen_inputs, chosen_outputs
@@ -27,7 +27,6 @@ if TYPE_CHECKING:
     from clutchwork.run.trajectory import Trajectory
     from clutchwork.stepping.simulator import Simulator
 
-Array = NDArray[np.float64]
 
 # what of an output comes from the slope of an input and is round-off
 ROUND_OFF = 1e-9

@@ -5,9 +5,9 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 import numpy as np
-from numpy.typing import NDArray
 
 from clutchwork.assembly.wiring import HOUSING
+from clutchwork.base.arrays import Array
 from clutchwork.linear.locked import Free, free_motion
 from clutchwork.linear.own_states import preference
 from clutchwork.linear.ties import Ties
@@ -16,8 +16,6 @@ from clutchwork.results.forms import LOCKED
 if TYPE_CHECKING:
     from clutchwork.declare.node import Node
     from clutchwork.linear.instant import Instant
-
-Array = NDArray[np.float64]
 
 
 class Local:

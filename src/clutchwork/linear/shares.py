@@ -5,9 +5,8 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
+from clutchwork.base.arrays import Array
 from clutchwork.base.classes import dataclass
-
-Array = NDArray[np.float64]
 
 ROUND_OFF = 1e-9
 

@@ -5,14 +5,12 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 import numpy as np
-from numpy.typing import NDArray
 
 from clutchwork.assembly.wiring import HOUSING
+from clutchwork.base.arrays import Array
 
 if TYPE_CHECKING:
     from clutchwork.linear.instant import Instant
-
-Array = NDArray[np.float64]
 
 
 class Ties:

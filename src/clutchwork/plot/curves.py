@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
+from clutchwork.base.arrays import Array
 from clutchwork.base.classes import dataclass
 from clutchwork.base.errors import UseError
 from clutchwork.base.quote import listed, quote
@@ -19,7 +20,6 @@ from clutchwork.results.units import Converter, among
 if TYPE_CHECKING:
     from clutchwork.results.recorded import Recorded
 
-Array = NDArray[np.float64]
 
 # what is measured in a unit, where a panel shows several quantities
 WORDS = {

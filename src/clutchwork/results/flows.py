@@ -12,9 +12,9 @@ from numbers import Real
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from clutchwork.assembly.wiring import HOUSING, Branch, GearRow, Wiring
+from clutchwork.base.arrays import Array
 from clutchwork.base.classes import dataclass
 from clutchwork.base.errors import OptionError, UseError
 from clutchwork.base.memoize import memoize
@@ -28,7 +28,6 @@ from clutchwork.results.events import Events
 if TYPE_CHECKING:
     from clutchwork.results.recorded import Recorded
 
-Array = NDArray[np.float64]
 
 # Gauss points on [0, 1], as in run/power.hpp
 POINTS = np.array([0.06943184420297371, 0.33000947820757187, 0.6699905217924281, 0.9305681557970263])

@@ -7,9 +7,9 @@ from dataclasses import field
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from clutchwork.base import html
+from clutchwork.base.arrays import Array
 from clutchwork.base.classes import dataclass
 from clutchwork.base.errors import ClutchworkError, UnknownName, near
 from clutchwork.base.extras import need
@@ -20,7 +20,6 @@ from clutchwork.declare.calls import explained_methods
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
-Array = NDArray[np.float64]
 # columns of a table for the terminal, and of one for a notebook
 MOST_SHOWN = 6
 

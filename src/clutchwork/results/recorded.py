@@ -7,9 +7,9 @@ from dataclasses import field
 from functools import cached_property
 from typing import TYPE_CHECKING, Any
 
-import numpy as np
 from numpy.typing import NDArray
 
+from clutchwork.base.arrays import Array
 from clutchwork.base.classes import dataclass
 from clutchwork.declare.calls import explained_methods
 from clutchwork.declare.layout import DONE, STATUSES
@@ -22,8 +22,6 @@ if TYPE_CHECKING:
     from clutchwork.assembly.system import System
     from clutchwork.assembly.wiring import Wiring
     from clutchwork.results.channels import Channels
-
-Array = NDArray[np.float64]
 
 
 @explained_methods("run")

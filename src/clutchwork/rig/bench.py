@@ -7,8 +7,8 @@ from numbers import Real
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
+from clutchwork.base.arrays import Array
 from clutchwork.base.classes import dataclass
 from clutchwork.base.errors import ModelWarning
 from clutchwork.declare.node import Domain, Law, Node, SignalLike
@@ -20,8 +20,6 @@ from clutchwork.elements.torque import Torque
 from clutchwork.rig.presets import Preset
 from clutchwork.run.failure import StoppedEarly
 from clutchwork.run.trajectory import Trajectory
-
-Array = NDArray[np.float64]
 
 # tight, because creep of 1e-9 m is to be seen beside sliding of 0.1 m
 ACCURATE = Options(rtol=1e-8, atol=1e-12)

@@ -11,11 +11,11 @@ from pathlib import Path
 from typing import Any, NoReturn
 
 import numpy as np
-from numpy.typing import NDArray
 
 from clutchwork.assembly.system import System, SystemFormatError
 from clutchwork.assembly.wiring import wiring
 from clutchwork.base import archive
+from clutchwork.base.arrays import Array
 from clutchwork.base.classes import dataclass
 from clutchwork.base.errors import ClutchworkError, ModelWarning
 from clutchwork.base.extras import program
@@ -34,9 +34,6 @@ from clutchwork.run.input_schedule import Schedule, Tape
 from clutchwork.run.save import FORMAT, MOST_BYTES, RUN_PARTS, RunFormatError
 from clutchwork.run.simulation import Job
 from clutchwork.run.trajectory import Trajectory
-
-Array = NDArray[np.float64]
-
 
 # read before the rows, whose size follows from them
 NAMED = tuple(name for name in RUN_PARTS if name not in ("run", "rows"))

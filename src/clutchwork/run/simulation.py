@@ -12,9 +12,9 @@ from functools import partial
 from typing import TYPE_CHECKING, Any, Protocol, Unpack
 
 import numpy as np
-from numpy.typing import NDArray
 
 from clutchwork.assembly.system import System
+from clutchwork.base.arrays import Array
 from clutchwork.base.classes import dataclass
 from clutchwork.base.errors import OptionError, UseError, caller
 from clutchwork.base.quote import quote
@@ -35,8 +35,6 @@ if TYPE_CHECKING:
     from clutchwork.results.channels import Channels
     from clutchwork.results.state import State
     from clutchwork.run.input_schedule import Schedule
-
-Array = NDArray[np.float64]
 
 
 class Assembles(Protocol):

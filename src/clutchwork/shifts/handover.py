@@ -6,8 +6,8 @@ from itertools import combinations
 from typing import TYPE_CHECKING
 
 import numpy as np
-from numpy.typing import NDArray
 
+from clutchwork.base.arrays import Array
 from clutchwork.base.classes import dataclass
 from clutchwork.gearbox.gear_set import HOUSING
 from clutchwork.gearbox.motion import speeds
@@ -18,7 +18,6 @@ if TYPE_CHECKING:
 
     from clutchwork.gearbox.gearbox import Gearbox
 
-Array = NDArray[np.float64]
 # torques that miss the wanted ones by less, as a share of these, meet them
 MEETS = 1e-9
 # how far beside the ratios of both gears that of the gear may be which carries on the way, as a share of the larger one

@@ -11,6 +11,7 @@ from typing import Any, TypeAlias
 import numpy as np
 from numpy.typing import NDArray
 
+from clutchwork.base.arrays import Array
 from clutchwork.base.classes import dataclass
 from clutchwork.base.errors import UseError
 from clutchwork.base.extras import need
@@ -19,7 +20,6 @@ from clutchwork.declare.calls import explained
 from clutchwork.declare.units import split
 from clutchwork.sweeps.factors import Factors
 
-Array = NDArray[np.float64]
 InSI: TypeAlias = Callable[[Any], Any]
 
 

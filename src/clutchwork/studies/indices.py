@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from clutchwork.base import html
+from clutchwork.base.arrays import Array
 from clutchwork.base.classes import dataclass
 from clutchwork.base.errors import UseError
 from clutchwork.base.extras import need
@@ -24,7 +25,6 @@ from clutchwork.sweeps.result import Sweep
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
-Array = NDArray[np.float64]
 # resampled sets of points that an interval is from
 RESAMPLED = 100
 HEADS = ("name", "first order", "+-", "total", "+-")

@@ -19,7 +19,8 @@ if TYPE_CHECKING:
 
     from matplotlib.figure import Figure
 
-    Array = NDArray[np.float64]
+    from clutchwork.base.arrays import Array
+
 
 ROW, BAR, HEAD = 50.0, 7.0, 25.0  # mm
 BINS = 60

@@ -18,8 +18,8 @@ from pathlib import Path
 from typing import BinaryIO
 
 import numpy as np
-from numpy.typing import NDArray
 
+from clutchwork.base.arrays import Array
 from clutchwork.base.classes import dataclass
 from clutchwork.base.errors import FileError, near
 from clutchwork.base.quote import listed, quote
@@ -30,8 +30,6 @@ from clutchwork.signals.bases import sheets
 from clutchwork.signals.bases.column_heads import ColumnHead, meant, split
 from clutchwork.signals.bases.semicolons import with_commas
 from clutchwork.signals.bases.sheets import NumericSheet
-
-Array = NDArray[np.float64]
 
 MOST_BYTES = 256_000_000
 MOST_LINES = 2_000_000

@@ -7,13 +7,14 @@ from pathlib import Path
 
 import numpy as np
 
+from clutchwork.base.arrays import Array
 from clutchwork.base.errors import FileError, near
 from clutchwork.base.quote import listed, quote
 from clutchwork.signals.bases import column_file, sheets
 from clutchwork.signals.bases.column_file import MOST_FAULTS, MOST_LINES, ColumnRequest, ColumnValues
 from clutchwork.signals.bases.column_heads import ColumnHead
 from clutchwork.signals.bases.measured.formats import format_of, opened
-from clutchwork.signals.bases.measured.series import Array, Clock, Series
+from clutchwork.signals.bases.measured.series import Clock, Series
 
 Faults = list[tuple[str, str, str]]
 
