@@ -15,7 +15,7 @@ from clutchwork.assembly.places import places
 from clutchwork.assembly.records import TYPES, Gearing, frozen
 from clutchwork.assembly.shared_states import Shared, flow_arrays, heat_arrays
 from clutchwork.assembly.sparse import sparse
-from clutchwork.base.errors import ModelError
+from clutchwork.base import ModelError
 from clutchwork.declare.core import number
 from clutchwork.declare.layout import FIELDS
 from clutchwork.declare.node import TabledComposite, is_reference

@@ -21,8 +21,7 @@ from clutchwork.assembly.changes import UNKNOWN_SOURCE, changed_system, owners_o
 from clutchwork.assembly.during_runs import NOTHING, OTHER, SIGNAL, Stays, stays
 from clutchwork.assembly.inputs import plain_signal
 from clutchwork.assembly.masses import is_mass, masses
-from clutchwork.base.classes import dataclass
-from clutchwork.base.errors import ModelError, ModelWarning, near
+from clutchwork.base import ModelError, ModelWarning, dataclass, near
 from clutchwork.base.memoize import memoize
 from clutchwork.declare.node import Signal
 from clutchwork.model.changes import SIGNALS, Target, all_names, field_of, renewed, target, unit_of

@@ -16,11 +16,8 @@ from clutchwork.assembly.patches import Numbered, numbered
 from clutchwork.assembly.records import TYPES, Gearing, Input, Link, frozen
 from clutchwork.assembly.sparse import dense, entries
 from clutchwork.assembly.storage_bounds import rooms
+from clutchwork.base import ModelError, counted, dataclass, near, quote
 from clutchwork.base.arrays import Array
-from clutchwork.base.classes import dataclass
-from clutchwork.base.errors import ModelError, near
-from clutchwork.base.plural import counted
-from clutchwork.base.quote import quote
 from clutchwork.declare.calls import explained_methods
 from clutchwork.declare.core import core
 from clutchwork.declare.layout import COUNTS, FIELDS, SPARSE

@@ -9,9 +9,8 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from clutchwork.base import ModelError, dataclass
 from clutchwork.base.arrays import Array
-from clutchwork.base.classes import dataclass
-from clutchwork.base.errors import ModelError
 from clutchwork.calibration.moves import Moves
 from clutchwork.calibration.terms import TermData, length
 from clutchwork.results.gradient import NoGradient

@@ -9,14 +9,11 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from clutchwork.base import UseError, columns, dataclass, quote
 from clutchwork.base.arrays import Array
-from clutchwork.base.classes import dataclass
-from clutchwork.base.errors import UseError
 from clutchwork.base.extras import need
 from clutchwork.base.paths import fitting
-from clutchwork.base.plural import columns
 from clutchwork.base.progress import followed
-from clutchwork.base.quote import quote
 from clutchwork.calibration.record import CalibrationError, CalibrationRecord
 from clutchwork.plot.chosen import PICTURES
 from clutchwork.plot.figure import figure_of, written

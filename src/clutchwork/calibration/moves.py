@@ -6,8 +6,8 @@ from collections.abc import Sequence
 
 import numpy as np
 
+from clutchwork.base import dataclass
 from clutchwork.base.arrays import Array
-from clutchwork.base.classes import dataclass
 from clutchwork.calibration.together import FACTOR, SHIFT, VALUE
 
 

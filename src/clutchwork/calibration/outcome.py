@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 
+from clutchwork.base import dataclass
 from clutchwork.base.arrays import Array
-from clutchwork.base.classes import dataclass
 
 # limits may be broken by so much, in shares of their scale
 FEASIBLE = 1e-6

@@ -8,11 +8,9 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from clutchwork.base import ModelError, UseError, dataclass, quote
 from clutchwork.base.arrays import Array
-from clutchwork.base.classes import dataclass
-from clutchwork.base.errors import ModelError, UseError
 from clutchwork.base.errors import Problem as Wrong
-from clutchwork.base.quote import quote
 from clutchwork.calibration.limits import Limit, Settled, WeightedSum, summed
 from clutchwork.calibration.moves import Moves, Variable
 from clutchwork.calibration.names import TimeTable, curve, numbers

@@ -9,9 +9,8 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from clutchwork.base import ClutchworkError, dataclass
 from clutchwork.base.arrays import Array
-from clutchwork.base.classes import dataclass
-from clutchwork.base.errors import ClutchworkError
 from clutchwork.calibration.held import Held
 from clutchwork.calibration.moves import Moves
 from clutchwork.calibration.optimal import Certificate

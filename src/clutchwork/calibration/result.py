@@ -8,9 +8,8 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from clutchwork.base import UseError, near, quote
 from clutchwork.base.arrays import Array
-from clutchwork.base.errors import UseError, near
-from clutchwork.base.quote import quote
 from clutchwork.calibration import words
 from clutchwork.calibration.corners import left
 from clutchwork.calibration.evaluate import Evaluator

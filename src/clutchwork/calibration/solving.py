@@ -7,8 +7,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from clutchwork.base import dataclass
 from clutchwork.base.arrays import Array
-from clutchwork.base.classes import dataclass
 from clutchwork.calibration.ending import Ending
 from clutchwork.calibration.feasibility import Restoring
 from clutchwork.calibration.optimal import certificate

@@ -10,9 +10,8 @@ from typing import TYPE_CHECKING, Any, ClassVar, NamedTuple, Protocol, TypeAlias
 
 import numpy as np
 
+from clutchwork.base import UnknownName, UseError, dataclass
 from clutchwork.base.arrays import Array
-from clutchwork.base.classes import dataclass
-from clutchwork.base.errors import UnknownName, UseError
 from clutchwork.calibration.names import curve
 from clutchwork.declare.calls import explained
 from clutchwork.results.channels import channels

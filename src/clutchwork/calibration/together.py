@@ -4,9 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from clutchwork.base.classes import dataclass
-from clutchwork.base.errors import UseError
-from clutchwork.base.quote import quote
+from clutchwork.base import UseError, dataclass, quote
 from clutchwork.declare.calls import explained
 from clutchwork.sweeps.numbers import pair
 

@@ -7,11 +7,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
+from clutchwork.base import UseError, columns, dataclass, quote
 from clutchwork.base.arrays import Array
-from clutchwork.base.classes import dataclass
-from clutchwork.base.errors import UseError
-from clutchwork.base.plural import columns
-from clutchwork.base.quote import quote
 from clutchwork.calibration.evaluate import Evaluator
 from clutchwork.calibration.scatter import drawn
 from clutchwork.gradients.differentiable import differentiable

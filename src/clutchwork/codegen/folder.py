@@ -6,10 +6,9 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from clutchwork.base.errors import UseError
+from clutchwork.base import UseError, quote
 from clutchwork.base.paths import fitting
 from clutchwork.base.paths import folder as made_folder
-from clutchwork.base.quote import quote
 from clutchwork.base.writing import put
 from clutchwork.codegen.model import Exported, chosen, files
 from clutchwork.codegen.parts import FILE, parts

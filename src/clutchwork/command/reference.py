@@ -6,9 +6,8 @@ import argparse
 from collections.abc import Iterator, Mapping
 from typing import Any
 
+from clutchwork.base import columns, counted, listed
 from clutchwork.base.errors import nearest
-from clutchwork.base.plural import columns, counted
-from clutchwork.base.quote import listed
 from clutchwork.base.shell import DONE, Example, add_command, add_json, paragraphs, tell, tell_json, width
 from clutchwork.declare.docs import FieldDescription, described, summary, words
 from clutchwork.declare.purposes import ELEMENT_ROLES, groups

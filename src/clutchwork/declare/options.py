@@ -11,8 +11,7 @@ from dataclasses import fields
 from math import inf
 from typing import TYPE_CHECKING, Any, Literal, Unpack, get_args
 
-from clutchwork.base.classes import dataclass
-from clutchwork.base.errors import OptionError, UseError, advised, near
+from clutchwork.base import OptionError, UseError, advised, dataclass, near
 from clutchwork.declare.calls import explain, explained_methods
 from clutchwork.declare.docs import document
 from clutchwork.declare.layout import METHODS

@@ -5,7 +5,7 @@ from __future__ import annotations
 from functools import cache
 from typing import TYPE_CHECKING, Any
 
-from clutchwork.base.classes import dataclass
+from clutchwork.base import dataclass
 from clutchwork.declare.node import HOUSING, Component, Domain, Node, ThermalNode
 from clutchwork.declare.rational import MINUS, ONE, exact
 from clutchwork.declare.schema import Way, specs

@@ -7,9 +7,8 @@ from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from clutchwork.base.errors import UseError, near
+from clutchwork.base import UseError, listed, near, quote
 from clutchwork.base.paths import path_fault
-from clutchwork.base.quote import listed, quote
 from clutchwork.declare.calls import explained
 from clutchwork.diagrams.axes import paint as parallel
 from clutchwork.diagrams.axes.layout import axes, fits

@@ -5,8 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from clutchwork.base.errors import UseError
-from clutchwork.base.quote import quote
+from clutchwork.base import UseError, quote
 from clutchwork.declare.calls import explained
 from clutchwork.driveline.driveline import Driveline
 from clutchwork.results.recorded import Recorded

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
-from clutchwork.base.classes import dataclass
+from clutchwork.base import dataclass
 from clutchwork.base.extras import program
 from clutchwork.declare.options import OPTIONS
 from clutchwork.model.settings import plain_settings

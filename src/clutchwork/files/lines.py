@@ -7,7 +7,7 @@ from collections.abc import Mapping
 from dataclasses import replace
 from typing import Any
 
-from clutchwork.base.errors import Problem
+from clutchwork.base import Problem
 
 _HEAD = re.compile(r'\s*(\[\[?)\s*"?([A-Za-z_]+)"?\s*((?:\.\s*(?:"[^"]*"|[\w-]+)\s*)*)\]\]?\s*(#.*)?')
 _KEY = re.compile(r'\s*"?([A-Za-z_][\w-]*)"?\s*[=.]')

@@ -8,8 +8,7 @@ from functools import cache
 from pathlib import Path
 from typing import Any, TypeVar
 
-from clutchwork.base.errors import FMUError, Problem, near
-from clutchwork.base.quote import listed, quote
+from clutchwork.base import FMUError, Problem, listed, near, quote
 from clutchwork.declare.node import HOUSING, Domain, Node, ThermalNode
 from clutchwork.declare.quantity import PLAIN, QuantityError, in_si, scale_to_si
 from clutchwork.declare.schema import REGISTRY, Role, Spec, inputs, specs

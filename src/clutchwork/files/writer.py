@@ -11,7 +11,7 @@ from numbers import Real
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from clutchwork.base.errors import Problem
+from clutchwork.base import Problem
 from clutchwork.declare.node import DIRECT, is_reference
 from clutchwork.declare.schema import Spec, specs
 from clutchwork.declare.wording import path_of

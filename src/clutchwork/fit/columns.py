@@ -8,9 +8,8 @@ from typing import NamedTuple
 
 import numpy as np
 
+from clutchwork.base import FileError, listed, near, quote
 from clutchwork.base.arrays import Array
-from clutchwork.base.errors import FileError, near
-from clutchwork.base.quote import listed, quote
 from clutchwork.fit.failure import FitError, refuse
 from clutchwork.signals.bases.column_file import names_of
 from clutchwork.signals.bases.column_heads import ColumnHead, split

@@ -8,8 +8,8 @@ from typing import ClassVar
 
 import numpy as np
 
+from clutchwork.base import ModelError
 from clutchwork.base.arrays import Array
-from clutchwork.base.errors import ModelError
 from clutchwork.fit.driven import Driven
 from clutchwork.fit.engine import STAY, LeastSquares, Signals, Solution
 from clutchwork.fit.failure import FitError, scipy

@@ -7,9 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from clutchwork.base.classes import dataclass
-from clutchwork.base.errors import ModelError, Problem, UseError
-from clutchwork.base.quote import listed
+from clutchwork.base import ModelError, Problem, UseError, dataclass, listed
 from clutchwork.declare.node import Signal
 from clutchwork.declare.options import Options
 from clutchwork.fit.failure import FitError

@@ -6,10 +6,8 @@ from collections.abc import Sequence
 from dataclasses import field
 from typing import Any, Self
 
+from clutchwork.base import ClutchworkError, columns, dataclass, near
 from clutchwork.base.arrays import Array
-from clutchwork.base.classes import dataclass
-from clutchwork.base.errors import ClutchworkError, near
-from clutchwork.base.plural import columns
 
 
 @dataclass(frozen=True)

@@ -8,8 +8,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from clutchwork.base import dataclass
 from clutchwork.base.arrays import Array
-from clutchwork.base.classes import dataclass
 from clutchwork.fit.information import Information, information
 from clutchwork.fit.measurement import Measurement
 from clutchwork.fit.model import model_of

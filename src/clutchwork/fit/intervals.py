@@ -10,8 +10,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from clutchwork.base import dataclass
 from clutchwork.base.arrays import Array
-from clutchwork.base.classes import dataclass
 from clutchwork.fit import reasons
 from clutchwork.fit.estimates import Parameter
 from clutchwork.fit.failure import scipy

@@ -8,8 +8,8 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from clutchwork.base import counted
 from clutchwork.base.arrays import Array
-from clutchwork.base.plural import counted
 from clutchwork.declare.node import Law as LawBase
 from clutchwork.fit import table
 from clutchwork.fit.adjustable import faults

@@ -7,10 +7,8 @@ from typing import Any
 
 import numpy as np
 
+from clutchwork.base import dataclass, near, quote
 from clutchwork.base.arrays import Array
-from clutchwork.base.classes import dataclass
-from clutchwork.base.errors import near
-from clutchwork.base.quote import quote
 from clutchwork.fit.failure import FitError
 
 # deviations of the noise within which residuals count in full

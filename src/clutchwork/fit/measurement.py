@@ -6,8 +6,8 @@ from typing import Any
 
 import numpy as np
 
+from clutchwork.base import dataclass
 from clutchwork.base.arrays import Array
-from clutchwork.base.classes import dataclass
 from clutchwork.fit.failure import FitError, numbers_of, rising
 
 FEWEST = 5

@@ -10,9 +10,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
+from clutchwork.base import UseError, dataclass, near
 from clutchwork.base.arrays import Array
-from clutchwork.base.classes import dataclass
-from clutchwork.base.errors import UseError, near
 from clutchwork.fit.failure import FitError, refuse
 from clutchwork.fit.unknown import Bounds, Pair, Unknown
 from clutchwork.gradients.parameters import ENTRY, Tunable, parameters

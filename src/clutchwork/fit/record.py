@@ -7,7 +7,7 @@ from dataclasses import field
 from pathlib import Path
 from typing import Any
 
-from clutchwork.base.classes import dataclass
+from clutchwork.base import dataclass
 from clutchwork.fit.columns import columns
 
 

@@ -8,10 +8,8 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from clutchwork.assembly.system import System
+from clutchwork.base import ModelError, counted, quote
 from clutchwork.base.arrays import Array
-from clutchwork.base.errors import ModelError
-from clutchwork.base.plural import counted
-from clutchwork.base.quote import quote
 from clutchwork.declare.calls import explained
 from clutchwork.fit.descent import Descent
 from clutchwork.fit.driven import Driven, driven

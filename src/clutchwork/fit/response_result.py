@@ -6,8 +6,7 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from clutchwork.base.classes import dataclass
-from clutchwork.base.plural import counted
+from clutchwork.base import counted, dataclass
 from clutchwork.fit.estimates import ParameterEstimates
 from clutchwork.fit.fitted_record import FittedRecord
 from clutchwork.fit.response_picture import picture

@@ -10,8 +10,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from clutchwork.assembly.records import frozen
+from clutchwork.base import ModelWarning
 from clutchwork.base.arrays import Array
-from clutchwork.base.errors import ModelWarning
 from clutchwork.declare.options import Options
 from clutchwork.driveline.driveline import Driveline
 from clutchwork.elements.brake import Brake

@@ -6,10 +6,8 @@ from pathlib import Path
 
 import numpy as np
 
+from clutchwork.base import dataclass, listed, near
 from clutchwork.base.arrays import Array
-from clutchwork.base.classes import dataclass
-from clutchwork.base.errors import near
-from clutchwork.base.quote import listed
 from clutchwork.declare.quantity import QuantityError
 from clutchwork.declare.units import parse
 from clutchwork.fit.failure import FitError

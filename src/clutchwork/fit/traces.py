@@ -7,10 +7,8 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from clutchwork.base import dataclass, near, quote
 from clutchwork.base.arrays import Array
-from clutchwork.base.classes import dataclass
-from clutchwork.base.errors import near
-from clutchwork.base.quote import quote
 from clutchwork.declare.quantity import QuantityError, scale_to_si
 from clutchwork.fit.failure import FitError, numbers_of, rising
 from clutchwork.results.forms import Mode

@@ -7,7 +7,7 @@ from dataclasses import replace
 from math import exp, inf, log, nextafter
 from typing import TYPE_CHECKING, Any, TypeAlias
 
-from clutchwork.base.classes import dataclass
+from clutchwork.base import dataclass
 from clutchwork.fit.adjustable import kinetic
 from clutchwork.fit.failure import FitError
 from clutchwork.fit.ordinates import ABOVE, STATIC, ordinates, rival

@@ -10,8 +10,8 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from clutchwork.base import near
 from clutchwork.base.arrays import Array
-from clutchwork.base.errors import near
 from clutchwork.fit.adjustable import adjustable, default_free, fixed, kinetic, sum_is_held
 from clutchwork.fit.failure import FitError
 from clutchwork.fit.ordinates import ordinates, with_ordinates

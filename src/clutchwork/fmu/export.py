@@ -10,9 +10,9 @@ from tempfile import TemporaryDirectory
 from typing import TYPE_CHECKING, Any
 
 from clutchwork.assembly.system import System
-from clutchwork.base.errors import UseError, warn
+from clutchwork.base import UseError, quote
+from clutchwork.base.errors import warn
 from clutchwork.base.paths import fitting
-from clutchwork.base.quote import quote
 from clutchwork.codegen.sources import licence
 from clutchwork.declare.calls import explained
 from clutchwork.declare.options import Options

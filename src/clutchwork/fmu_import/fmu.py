@@ -9,9 +9,8 @@ from numbers import Real
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from clutchwork.base.errors import FMUError, UseError
+from clutchwork.base import FMUError, UseError, quote
 from clutchwork.base.paths import path_of
-from clutchwork.base.quote import quote
 from clutchwork.declare.calls import explained
 from clutchwork.declare.quantity import QuantityError, has_unit, in_si
 from clutchwork.fmu_import import archive

@@ -6,7 +6,7 @@ import platform
 import sys
 from collections.abc import Sequence
 
-from clutchwork.base.errors import FMUError
+from clutchwork.base import FMUError
 from clutchwork.fmu_import.description import Description
 
 ENDINGS = {"linux": ".so", "win32": ".dll", "darwin": ".dylib"}

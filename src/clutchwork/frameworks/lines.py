@@ -6,9 +6,8 @@ from collections.abc import Sequence
 
 import numpy as np
 
+from clutchwork.base import UseError, counted
 from clutchwork.base.arrays import Array
-from clutchwork.base.errors import UseError
-from clutchwork.base.plural import counted
 from clutchwork.gradients.differentiable import Differentiable
 
 

@@ -11,9 +11,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from clutchwork.base import dataclass, quote
 from clutchwork.base.arrays import Array
-from clutchwork.base.classes import dataclass
-from clutchwork.base.quote import quote
 from clutchwork.declare.quantity import QuantityError, has_unit
 
 InSI = Callable[[str, Any], Any]

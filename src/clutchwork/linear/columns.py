@@ -8,8 +8,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
+from clutchwork.base import dataclass
 from clutchwork.base.arrays import Array
-from clutchwork.base.classes import dataclass
 from clutchwork.linear.own_states import apart, followers, own_states, wound_up
 from clutchwork.results.channels import ANGLE, PLACE, SPEED
 

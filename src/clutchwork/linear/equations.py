@@ -7,8 +7,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from clutchwork.base import dataclass
 from clutchwork.base.arrays import Array
-from clutchwork.base.classes import dataclass
 from clutchwork.linear.columns import StateColumns, columns
 from clutchwork.linear.motion import Motion
 from clutchwork.linear.own_states import own_states

@@ -12,10 +12,8 @@ from numpy.typing import NDArray
 
 from clutchwork.assembly.system import System
 from clutchwork.assembly.wiring import Wiring, wiring
+from clutchwork.base import UseError, dataclass, quote
 from clutchwork.base.arrays import Array
-from clutchwork.base.classes import dataclass
-from clutchwork.base.errors import UseError
-from clutchwork.base.quote import quote
 from clutchwork.declare.layout import MODES
 from clutchwork.declare.quantity import QuantityError, has_unit, in_si
 from clutchwork.linear.reached import options_of, reached, refuse_stopped, started, step_over

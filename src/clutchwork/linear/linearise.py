@@ -7,8 +7,8 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from clutchwork.base import UseError
 from clutchwork.base.arrays import Array
-from clutchwork.base.errors import UseError
 from clutchwork.declare.calls import explained
 from clutchwork.linear.chosen import Excitation, chosen_inputs, chosen_outputs
 from clutchwork.linear.equations import equations

@@ -9,8 +9,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from clutchwork.assembly.shared_states import state_scales
+from clutchwork.base import dataclass
 from clutchwork.base.arrays import Array
-from clutchwork.base.classes import dataclass
 from clutchwork.results.channels import ANGLE
 
 if TYPE_CHECKING:

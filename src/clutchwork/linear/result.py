@@ -8,10 +8,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
-from clutchwork.base import html
-from clutchwork.base.errors import UseError
-from clutchwork.base.plural import columns, counted
-from clutchwork.base.quote import quote
+from clutchwork.base import UseError, columns, counted, html, quote
 from clutchwork.declare.calls import explained, explained_methods
 from clutchwork.declare.quantity import QuantityError, has_unit, in_si
 from clutchwork.linear.handover import to_control, to_dict, to_scipy

@@ -13,9 +13,9 @@ from dataclasses import dataclass, field, fields, replace
 from functools import cache
 from typing import Any
 
-from clutchwork.base.errors import ModelError, Problem, near, nearest
+from clutchwork.base import ModelError, Problem, near, quote
+from clutchwork.base.errors import nearest
 from clutchwork.base.frozen import Frozen
-from clutchwork.base.quote import quote
 from clutchwork.declare.node import (
     DIRECT,
     Component,

@@ -6,7 +6,7 @@ from dataclasses import fields, is_dataclass
 from functools import cached_property
 from typing import TYPE_CHECKING, Any, NamedTuple
 
-from clutchwork.base.classes import dataclass
+from clutchwork.base import dataclass
 from clutchwork.declare.node import TabledComposite
 from clutchwork.declare.wording import of_files
 from clutchwork.model.kinematics import kinematics
@@ -20,7 +20,7 @@ from clutchwork.model.structure import Kinematics, Mechanism
 if TYPE_CHECKING:
     from collections.abc import Iterable, Sequence
 
-    from clutchwork.base.errors import Problem
+    from clutchwork.base import Problem
     from clutchwork.declare.node import Component, Signal
     from clutchwork.declare.rational import Row
     from clutchwork.model.model import Model

@@ -8,8 +8,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from clutchwork.base.errors import Problem, near
-from clutchwork.base.quote import listed, quote
+from clutchwork.base import Problem, listed, near, quote
 from clutchwork.declare.rational import MINUS, ONE, Echelon, Row, eliminate, plus, smallest
 from clutchwork.model import massless, variable_ratios
 from clutchwork.model.structure import Kinematics, Mechanism, RigidRow

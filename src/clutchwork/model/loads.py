@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
-from clutchwork.base.errors import Problem
+from clutchwork.base import Problem
 from clutchwork.declare.rational import MINUS, ONE, ZERO, Row, eliminate, plus, smallest
 from clutchwork.declare.schema import Role
 from clutchwork.declare.wording import path_of

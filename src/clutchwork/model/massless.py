@@ -7,8 +7,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any, NamedTuple
 
-from clutchwork.base.errors import Problem
-from clutchwork.base.quote import quote
+from clutchwork.base import Problem, quote
 from clutchwork.declare.node import Domain
 from clutchwork.declare.rational import ONE, ZERO, Row, eliminate, exact, plus
 from clutchwork.declare.schema import Role

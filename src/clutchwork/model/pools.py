@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from clutchwork.base.classes import dataclass
+from clutchwork.base import dataclass
 from clutchwork.declare.core import core, number
 from clutchwork.declare.schema import WORDS, specs
 

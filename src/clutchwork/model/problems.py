@@ -4,8 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from clutchwork.base.errors import Problem
-from clutchwork.base.quote import quote
+from clutchwork.base import Problem, quote
 from clutchwork.declare.node import HOUSING, Component, Domain, Node, ThermalNode
 from clutchwork.declare.ports import ports
 from clutchwork.declare.schema import Spec

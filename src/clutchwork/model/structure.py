@@ -8,7 +8,7 @@ from math import inf, isfinite
 from numbers import Real
 from typing import TYPE_CHECKING, Any
 
-from clutchwork.base.classes import dataclass
+from clutchwork.base import dataclass
 from clutchwork.declare.node import Component, Domain, Node
 from clutchwork.declare.ports import coefficients, ports
 from clutchwork.declare.rational import MINUS, ONE, Row, exact, plus

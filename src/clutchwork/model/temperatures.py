@@ -7,7 +7,7 @@ from functools import cache
 from numbers import Real
 from typing import TYPE_CHECKING, Any
 
-from clutchwork.base.errors import Problem
+from clutchwork.base import Problem
 from clutchwork.declare.node import Law, Signal
 from clutchwork.declare.schema import Spec, specs
 from clutchwork.declare.wording import path_of

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator, Mapping
 from typing import TYPE_CHECKING, Any
 
-from clutchwork.base.errors import ModelError
+from clutchwork.base import ModelError
 from clutchwork.signals.table import Table
 
 if TYPE_CHECKING:

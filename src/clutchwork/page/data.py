@@ -8,7 +8,7 @@ from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any
 
 from clutchwork.assembly.wiring import Wiring, wiring
-from clutchwork.base.classes import dataclass
+from clutchwork.base import dataclass
 from clutchwork.declare.core import core
 from clutchwork.declare.layout import CAUSES, MODES, STATUS
 from clutchwork.page.copied import paths

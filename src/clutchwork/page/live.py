@@ -6,7 +6,7 @@ from collections.abc import Iterator, Sequence
 from html import escape
 from typing import TYPE_CHECKING, Any
 
-from clutchwork.base.classes import dataclass
+from clutchwork.base import dataclass
 from clutchwork.schematic.cells import SymbolCell
 from clutchwork.schematic.diagram import SymbolGraph, Thing, diagram
 from clutchwork.schematic.look import OPEN, STATES

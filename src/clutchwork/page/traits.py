@@ -7,8 +7,7 @@ from math import isfinite
 from numbers import Real
 from typing import Any
 
-from clutchwork.base.errors import UseError, near
-from clutchwork.base.quote import quote
+from clutchwork.base import UseError, near, quote
 
 Data = Sequence[Mapping[str, Any]]
 

@@ -9,10 +9,8 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
+from clutchwork.base import UseError, dataclass, listed, quote
 from clutchwork.base.arrays import Array
-from clutchwork.base.classes import dataclass
-from clutchwork.base.errors import UseError
-from clutchwork.base.quote import listed, quote
 from clutchwork.declare.layout import MODES
 from clutchwork.plot.panels import SCALES
 from clutchwork.results.units import Converter, among

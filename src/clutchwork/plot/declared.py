@@ -6,8 +6,7 @@ from collections.abc import Callable, Sequence
 from numbers import Real
 from typing import TYPE_CHECKING, Any
 
-from clutchwork.base import html
-from clutchwork.base.errors import ClutchworkError
+from clutchwork.base import ClutchworkError, html
 from clutchwork.declare.docs import described
 from clutchwork.declare.schema import specs
 

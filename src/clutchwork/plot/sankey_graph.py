@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections import Counter, defaultdict, deque
 from collections.abc import Callable
 
-from clutchwork.base.classes import dataclass
+from clutchwork.base import dataclass
 from clutchwork.results.losses import LossTable
 
 # ribbons below this part of the largest box are not drawn

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 from clutchwork.assembly.dependence import dependent_sets
 from clutchwork.assembly.sparse import entries
-from clutchwork.base.classes import dataclass
+from clutchwork.base import dataclass
 from clutchwork.results.locked_intervals import stretches
 
 if TYPE_CHECKING:

@@ -9,12 +9,9 @@ from typing import TYPE_CHECKING, Any, overload
 import numpy as np
 from numpy.typing import NDArray
 
-from clutchwork.base.classes import dataclass
-from clutchwork.base.errors import UnknownName, near
+from clutchwork.base import UnknownName, columns, dataclass, listed, near, quote
 from clutchwork.base.memoize import memoize
 from clutchwork.base.paths import fitting
-from clutchwork.base.plural import columns
-from clutchwork.base.quote import listed, quote
 from clutchwork.declare.calls import explained, explained_methods
 from clutchwork.declare.layout import CAUSES, EVENT, MODES
 from clutchwork.declare.node import Domain

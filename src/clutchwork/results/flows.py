@@ -14,11 +14,9 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from clutchwork.assembly.wiring import HOUSING, Branch, GearRow, Wiring
+from clutchwork.base import OptionError, UseError, dataclass, quote
 from clutchwork.base.arrays import Array
-from clutchwork.base.classes import dataclass
-from clutchwork.base.errors import OptionError, UseError
 from clutchwork.base.memoize import memoize
-from clutchwork.base.quote import quote
 from clutchwork.declare.quantity import QuantityError, has_unit, in_si
 from clutchwork.results import reactions
 from clutchwork.results.channels import LOCKED

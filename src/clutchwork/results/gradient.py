@@ -8,13 +8,9 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from clutchwork.base import html
+from clutchwork.base import ClutchworkError, UnknownName, columns, counted, dataclass, html, listed, near, quote
 from clutchwork.base.arrays import Array
-from clutchwork.base.classes import dataclass
-from clutchwork.base.errors import ClutchworkError, UnknownName, near
 from clutchwork.base.extras import need
-from clutchwork.base.plural import columns, counted
-from clutchwork.base.quote import listed, quote
 from clutchwork.declare.calls import explained_methods
 
 if TYPE_CHECKING:

@@ -7,12 +7,8 @@ from collections.abc import Callable, Iterator, Mapping
 from functools import cache
 from typing import TYPE_CHECKING, Any, TypeVar
 
-from clutchwork.base import html
-from clutchwork.base.classes import dataclass
-from clutchwork.base.errors import UnknownName, near
+from clutchwork.base import UnknownName, columns, dataclass, html, near, quote
 from clutchwork.base.extras import need
-from clutchwork.base.plural import columns
-from clutchwork.base.quote import quote
 from clutchwork.declare.calls import explained_methods
 from clutchwork.declare.node import Component, Domain, Work
 from clutchwork.results.flows import Flows

@@ -9,8 +9,8 @@ from typing import TYPE_CHECKING, Any
 
 from numpy.typing import NDArray
 
+from clutchwork.base import dataclass
 from clutchwork.base.arrays import Array
-from clutchwork.base.classes import dataclass
 from clutchwork.declare.calls import explained_methods
 from clutchwork.declare.layout import DONE, STATUSES
 from clutchwork.declare.options import Options

@@ -7,9 +7,8 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from clutchwork.base import OptionError, quote
 from clutchwork.base.arrays import Array
-from clutchwork.base.errors import OptionError
-from clutchwork.base.quote import quote
 from clutchwork.declare.options import MOST_COUNTED, MOST_ROWS, ONE_GRID, Options, instants
 from clutchwork.declare.units import split
 

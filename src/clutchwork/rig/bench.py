@@ -8,9 +8,8 @@ from typing import Any
 
 import numpy as np
 
+from clutchwork.base import ModelWarning, dataclass
 from clutchwork.base.arrays import Array
-from clutchwork.base.classes import dataclass
-from clutchwork.base.errors import ModelWarning
 from clutchwork.declare.node import Domain, Law, Node, SignalLike
 from clutchwork.declare.options import Options
 from clutchwork.driveline.driveline import Driveline

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping
 from typing import Any, TypeAlias
 
-from clutchwork.base.errors import near
+from clutchwork.base import near
 from clutchwork.declare.node import Law
 from clutchwork.rig.presets import Preset
 

@@ -7,8 +7,7 @@ from dataclasses import fields
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, ClassVar, TypeVar
 
-from clutchwork.base.classes import dataclass
-from clutchwork.base.errors import near
+from clutchwork.base import dataclass, near
 from clutchwork.base.paths import fitting
 from clutchwork.declare.node import Law
 from clutchwork.declare.options import Options

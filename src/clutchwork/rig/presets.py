@@ -6,8 +6,7 @@ from functools import cached_property
 from math import exp
 from typing import Any
 
-from clutchwork.base.classes import dataclass
-from clutchwork.base.errors import near
+from clutchwork.base import dataclass, near
 from clutchwork.declare.node import Domain, Law
 from clutchwork.declare.schema import REGISTRY, Role, specs
 

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from clutchwork.base.quote import quote
+from clutchwork.base import quote
 from clutchwork.declare.core import core
 from clutchwork.declare.layout import DONE, EVENTS_FULL, ROWS_FULL
 from clutchwork.declare.options import Options

@@ -14,13 +14,11 @@ import numpy as np
 
 from clutchwork.assembly.system import System, SystemFormatError
 from clutchwork.assembly.wiring import wiring
-from clutchwork.base import archive
+from clutchwork.base import ClutchworkError, ModelWarning, archive, dataclass, listed
 from clutchwork.base.arrays import Array
-from clutchwork.base.classes import dataclass
-from clutchwork.base.errors import ClutchworkError, ModelWarning
 from clutchwork.base.extras import program
 from clutchwork.base.paths import path_of
-from clutchwork.base.quote import listed, shortened
+from clutchwork.base.quote import shortened
 from clutchwork.base.regular import reason
 from clutchwork.declare.calls import explained
 from clutchwork.declare.layout import MODES, STATUSES

@@ -14,10 +14,8 @@ from typing import TYPE_CHECKING, Any, Protocol, Unpack
 import numpy as np
 
 from clutchwork.assembly.system import System
+from clutchwork.base import OptionError, UseError, caller, dataclass, quote
 from clutchwork.base.arrays import Array
-from clutchwork.base.classes import dataclass
-from clutchwork.base.errors import OptionError, UseError, caller
-from clutchwork.base.quote import quote
 from clutchwork.declare.calls import explained
 from clutchwork.declare.layout import DONE, INTERRUPTED, NOT_FINITE, REFUSED, STATUSES
 from clutchwork.declare.options import Options, instants

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from clutchwork.base.classes import dataclass
+from clutchwork.base import dataclass
 from clutchwork.declare.schema import Role
 from clutchwork.results.forms import LOCKED as LOCKED_MODE
 from clutchwork.results.gears import NEUTRAL, gears_of

@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import field
 from itertools import pairwise
 
-from clutchwork.base.classes import dataclass
+from clutchwork.base import dataclass
 from clutchwork.schematic.cells import SymbolCell, cell_of, line_of
 from clutchwork.schematic.diagram import SymbolGraph, Thing
 from clutchwork.schematic.flow import flow

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
-from clutchwork.base.classes import dataclass
+from clutchwork.base import dataclass
 
 if TYPE_CHECKING:
     from collections.abc import Sequence

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 
+from clutchwork.base import UseError
 from clutchwork.base.arrays import Array
-from clutchwork.base.errors import UseError
 from clutchwork.results.felt import WINDOW, felt_jerk
 
 # weighting for horizontal vibration of seated people, Wd of ISO 2631-1: limits, transition [Hz] and its quality

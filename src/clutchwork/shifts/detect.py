@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from clutchwork.base.classes import dataclass
+from clutchwork.base import dataclass
 from clutchwork.shifts.gears import InGear, gears_of
 from clutchwork.shifts.record import NEUTRAL
 

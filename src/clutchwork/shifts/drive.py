@@ -7,9 +7,8 @@ from math import inf, isfinite
 from numbers import Real
 from typing import TYPE_CHECKING, SupportsFloat
 
-from clutchwork.base.classes import dataclass
-from clutchwork.base.errors import UseError, expect
-from clutchwork.base.quote import quote
+from clutchwork.base import UseError, dataclass, quote
+from clutchwork.base.errors import expect
 from clutchwork.declare.calls import explained
 from clutchwork.shifts.controller import ShiftController
 from clutchwork.shifts.hybrid import HybridController

@@ -6,9 +6,7 @@ from functools import lru_cache
 from itertools import pairwise, product
 from typing import TYPE_CHECKING
 
-from clutchwork.base.classes import dataclass
-from clutchwork.base.errors import UseError
-from clutchwork.base.quote import listed
+from clutchwork.base import UseError, dataclass, listed
 from clutchwork.gearbox.motion import speeds
 
 if TYPE_CHECKING:

@@ -8,8 +8,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from clutchwork.assembly.wiring import wiring
-from clutchwork.base.errors import UseError
-from clutchwork.base.quote import listed
+from clutchwork.base import UseError, listed
 from clutchwork.declare import Component
 from clutchwork.declare.schema import specs
 from clutchwork.elements.pressure_actuator import PressureActuator

@@ -7,8 +7,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from clutchwork.base import dataclass
 from clutchwork.base.arrays import Array
-from clutchwork.base.classes import dataclass
 from clutchwork.gearbox.gear_set import HOUSING
 from clutchwork.gearbox.motion import speeds
 from clutchwork.shifts.exchange import FRICTION, ratio_of, state_of

@@ -8,8 +8,8 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
+from clutchwork.base import dataclass
 from clutchwork.base.arrays import Array
-from clutchwork.base.classes import dataclass
 from clutchwork.results.felt import WINDOW
 from clutchwork.shifts.comfort import jerk, vibration_dose
 from clutchwork.shifts.detect import Shift, shifts_of

@@ -8,10 +8,9 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from clutchwork.assembly.wiring import HOUSING, wiring
-from clutchwork.base.classes import dataclass
-from clutchwork.base.errors import UseError, expect, near
+from clutchwork.base import UseError, dataclass, listed, near, quote
+from clutchwork.base.errors import expect
 from clutchwork.base.frozen import Frozen
-from clutchwork.base.quote import listed, quote
 from clutchwork.declare.calls import explained
 from clutchwork.gearbox.gearbox import Gearbox
 from clutchwork.run.simulation import Assembles, model_of

@@ -8,9 +8,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from clutchwork.base.classes import dataclass
-from clutchwork.base.errors import UseError
-from clutchwork.base.quote import listed
+from clutchwork.base import UseError, dataclass, listed
 from clutchwork.gearbox.motion import speeds
 
 if TYPE_CHECKING:

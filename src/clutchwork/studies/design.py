@@ -10,11 +10,8 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
-from clutchwork.base.classes import dataclass
-from clutchwork.base.errors import UnknownName, UseError, near
+from clutchwork.base import UnknownName, UseError, columns, counted, dataclass, near, quote
 from clutchwork.base.extras import need
-from clutchwork.base.plural import columns, counted
-from clutchwork.base.quote import quote
 from clutchwork.declare.calls import explained, explained_methods
 from clutchwork.model.changes import targets_of
 from clutchwork.studies.distributions import Discrete, Distribution, distribution

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
-from clutchwork.base.errors import UseError
+from clutchwork.base import UseError
 from clutchwork.base.paths import fitting
 from clutchwork.plot.chosen import PICTURES
 from clutchwork.plot.figure import figure_of

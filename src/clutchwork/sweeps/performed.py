@@ -9,9 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from clutchwork.base import shell
-from clutchwork.base.errors import UseError, near
-from clutchwork.base.plural import columns, counted
+from clutchwork.base import UseError, columns, counted, near, shell
 from clutchwork.base.shell import DONE, INTERRUPTED, STOPPED
 from clutchwork.declare.options import instants
 from clutchwork.declare.units import split

@@ -7,8 +7,7 @@ from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any
 
 from clutchwork.assembly.system import System
-from clutchwork.base.errors import ModelError, UseError
-from clutchwork.base.quote import quote
+from clutchwork.base import ModelError, UseError, quote
 from clutchwork.declare.options import Options
 from clutchwork.run.settings import merged, refuse_endless
 from clutchwork.run.simulation import refuse_fixed

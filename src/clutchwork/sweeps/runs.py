@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from clutchwork.base.quote import quote
+from clutchwork.base import quote
 from clutchwork.declare.layout import INTERRUPTED
 from clutchwork.declare.node import Signal
 from clutchwork.run.control import controllers

@@ -7,7 +7,7 @@ from collections.abc import Callable
 from typing import TYPE_CHECKING, Any, Unpack
 
 from clutchwork.assembly.system import System
-from clutchwork.base.errors import ModelWarning, caller
+from clutchwork.base import ModelWarning, caller
 from clutchwork.base.progress import followed
 from clutchwork.declare.calls import explained
 from clutchwork.declare.options import Options

@@ -4,8 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any, NamedTuple
 
-from clutchwork.base import html
-from clutchwork.base.plural import columns, counted
+from clutchwork.base import columns, counted, html
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence

@@ -10,7 +10,7 @@ from itertools import pairwise
 from math import ceil, floor
 from typing import TYPE_CHECKING
 
-from clutchwork.base.classes import dataclass
+from clutchwork.base import dataclass
 from clutchwork.diagrams.letters import width_of
 from clutchwork.diagrams.lever.points import Lever, levers
 from clutchwork.diagrams.marks import FAINT, GREY, HELD, INK, NAME, POWER, SMALL, Mark, Pen

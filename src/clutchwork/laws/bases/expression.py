@@ -11,8 +11,8 @@ import warnings
 from math import inf
 from typing import TYPE_CHECKING, NamedTuple
 
-from clutchwork.base.errors import near
-from clutchwork.base.quote import quote, shortened
+from clutchwork.base import near, quote
+from clutchwork.base.quote import shortened
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Collection, Sequence

@@ -10,7 +10,7 @@ from keyword import iskeyword
 from numbers import Real
 from typing import TYPE_CHECKING, Any, ClassVar, NamedTuple
 
-from clutchwork.base.classes import dataclass
+from clutchwork.base import dataclass
 from clutchwork.base.errors import nearest
 from clutchwork.declare import Law, SignalLike, family, formula, param, signal, units
 from clutchwork.declare.pints import is_quantity

@@ -6,7 +6,7 @@ import math
 from functools import lru_cache
 from typing import TYPE_CHECKING, Any, NamedTuple
 
-from clutchwork.base.plural import counted
+from clutchwork.base import counted
 from clutchwork.laws.bases.expression import INPUTS, SLIP, FormulaGraph, Mistake, Reader
 
 if TYPE_CHECKING:

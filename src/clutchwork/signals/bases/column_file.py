@@ -19,10 +19,8 @@ from typing import BinaryIO
 
 import numpy as np
 
+from clutchwork.base import FileError, dataclass, listed, near, quote
 from clutchwork.base.arrays import Array
-from clutchwork.base.classes import dataclass
-from clutchwork.base.errors import FileError, near
-from clutchwork.base.quote import listed, quote
 from clutchwork.base.regular import open_regular, reason
 from clutchwork.declare.quantity import PLAIN, QuantityError
 from clutchwork.declare.units import Scale

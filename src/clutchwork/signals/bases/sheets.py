@@ -10,8 +10,8 @@ from itertools import chain
 
 import numpy as np
 
+from clutchwork.base import dataclass
 from clutchwork.base.arrays import Array
-from clutchwork.base.classes import dataclass
 
 # of the text of a file that is kept as numbers
 MOST_BYTES = 1 << 20

@@ -10,8 +10,8 @@ from typing import Any
 
 import numpy as np
 
+from clutchwork.base import dataclass
 from clutchwork.base.arrays import Array
-from clutchwork.base.classes import dataclass
 from clutchwork.base.extras import need
 from clutchwork.signals.bases.measured.other_units import own_unit
 from clutchwork.signals.bases.measured.series import CLOCKS, Clock, Series, numbers
