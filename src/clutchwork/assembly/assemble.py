@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import replace
+from fractions import Fraction
 from functools import partial
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -31,11 +33,6 @@ from clutchwork.model.pools import Pools
 from clutchwork.model.start import Started, initial_angles, speed_at_start, start
 from clutchwork.model.structure import Kinematics, Mechanism, follows_load
 from clutchwork.model.variable_ratios import ordered, transmissions
-
-if TYPE_CHECKING:
-    from collections.abc import Callable, Iterable, Mapping, Sequence
-    from fractions import Fraction
-
 
 Array = NDArray[Any]
 

@@ -4,8 +4,9 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
+from clutchwork.assembly.system import System
 from clutchwork.base import UseError, quote
 from clutchwork.base.paths import fitting
 from clutchwork.base.paths import folder as made_folder
@@ -19,9 +20,6 @@ from clutchwork.driveline.driveline import Driveline
 from clutchwork.results.channels import channels
 from clutchwork.run.begin import new_run
 from clutchwork.run.settings import merged
-
-if TYPE_CHECKING:
-    from clutchwork.assembly.system import System
 
 TEMPLATES = Path(__file__).parent / "templates"
 # intervals of the grid when no spacing is given

@@ -6,12 +6,13 @@ from collections.abc import Sequence
 from dataclasses import replace
 from numbers import Real
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
 from clutchwork.base import counted
 from clutchwork.base.arrays import Array
+from clutchwork.declare.node import Law
 from clutchwork.declare.node import Law as LawBase
 from clutchwork.declare.schema import inputs
 from clutchwork.fit import table
@@ -33,10 +34,6 @@ from clutchwork.fit.search import TORQUE, Residuals
 from clutchwork.fit.sliding import Sliding, noisy
 from clutchwork.fit.unknown import Bounds
 from clutchwork.fit.unknowns import Unknowns
-
-if TYPE_CHECKING:
-    from clutchwork.declare.node import Law
-
 
 TEMPERATURE = "temperature"
 _REMEDY = "give the measured temperature [K], a number or a row"

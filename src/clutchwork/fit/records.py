@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
@@ -24,12 +24,9 @@ from clutchwork.fit.record import Record
 from clutchwork.fit.record_readings import readings
 from clutchwork.fit.response_result import ResponseFit
 from clutchwork.fit.traces import label
+from clutchwork.fit.unknown import Pair
 from clutchwork.gradients.parameters import changes, parameters
-
-if TYPE_CHECKING:
-    from clutchwork.fit.unknown import Pair
-    from clutchwork.run.simulation import Assembles
-
+from clutchwork.run.simulation import Assembles
 
 # sums of squares that differ by less, of themselves, are those of one solution
 SAME = 1e-3

@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from importlib.metadata import version as installed
 from pathlib import Path
 from tempfile import TemporaryDirectory
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 from clutchwork.assembly.system import System
 from clutchwork.base import UseError, html, quote
@@ -26,9 +26,6 @@ from clutchwork.fmu.names import plain
 from clutchwork.fmu.resource import resource
 from clutchwork.fmu.variables import FmuVariable, VariableKind
 from clutchwork.run.settings import merged
-
-if TYPE_CHECKING:
-    from collections.abc import Mapping
 
 VERSIONS = ("2.0", "3.0")
 PICTURES = {"2.0": "model.png", "3.0": "terminalsAndIcons/icon.png"}

@@ -5,7 +5,8 @@ from __future__ import annotations
 import math
 import os
 import warnings
-from typing import TYPE_CHECKING, Any
+from collections.abc import Iterable, Iterator, Sequence
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -15,7 +16,9 @@ from clutchwork.assembly.wiring import Wiring, wiring
 from clutchwork.base import UseError, dataclass, quote
 from clutchwork.base.arrays import Array
 from clutchwork.declare.layout import DONE, MODES
+from clutchwork.declare.options import Options
 from clutchwork.declare.quantity import QuantityError, has_unit, in_si
+from clutchwork.results.events import Event
 from clutchwork.results.state import State
 from clutchwork.run.begin import begun
 from clutchwork.run.control import controllers
@@ -24,12 +27,6 @@ from clutchwork.run.settings import without_end
 from clutchwork.run.simulation import simulate, told
 from clutchwork.run.trajectory import SimulationError, Trajectory
 from clutchwork.stepping.simulator import Simulator
-
-if TYPE_CHECKING:
-    from collections.abc import Iterable, Iterator, Sequence
-
-    from clutchwork.declare.options import Options
-    from clutchwork.results.events import Event
 
 CALL = "linearise"
 

@@ -6,17 +6,14 @@ import json
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from math import isfinite
 from numbers import Real
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 from clutchwork.base import UseError, near, quote
 from clutchwork.base.extras import need
 from clutchwork.page.page import quiet_data, refuse, wanted_of
 from clutchwork.page.static import CORE, FOLDER, STYLE, WIDGET, built
+from clutchwork.run.trajectory import Trajectory
 from clutchwork.signals.table import Table
-
-if TYPE_CHECKING:
-    from clutchwork.run.trajectory import Trajectory
-
 
 Data = Sequence[Mapping[str, Any]]
 

@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import field
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
@@ -12,9 +12,6 @@ from clutchwork.base import ClutchworkError, UnknownName, columns, counted, data
 from clutchwork.base.arrays import Array
 from clutchwork.base.extras import need
 from clutchwork.declare.calls import explained_methods
-
-if TYPE_CHECKING:
-    from collections.abc import Iterator
 
 # columns of a table for the terminal, and of one for a notebook
 MOST_SHOWN = 6

@@ -3,16 +3,14 @@
 from __future__ import annotations
 
 import warnings
+from collections.abc import Callable
 from functools import cached_property
-from typing import TYPE_CHECKING, Any, Protocol
+from typing import Any, Protocol
 
 import numpy as np
 
 from clutchwork.base.arrays import Array
 from clutchwork.base.extras import need
-
-if TYPE_CHECKING:
-    from collections.abc import Callable
 
 # of random points that are drawn together
 BLOCK = 4096

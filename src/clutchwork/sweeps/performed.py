@@ -5,7 +5,8 @@ from __future__ import annotations
 import argparse
 import re
 import sys
-from typing import TYPE_CHECKING, Any
+from collections.abc import Iterator
+from typing import Any
 
 import numpy as np
 
@@ -21,9 +22,6 @@ from clutchwork.sweeps.asking import CALLS, FORMS, KNOWN
 from clutchwork.sweeps.factors import times
 from clutchwork.sweeps.result import Sweep, SweepInterrupted
 from clutchwork.sweeps.sweep import sweep
-
-if TYPE_CHECKING:
-    from collections.abc import Iterator
 
 WRITERS = {".parquet": Sweep.to_parquet, ".csv": Sweep.to_csv}
 
