@@ -174,7 +174,7 @@ def mass_arrays(inertia: Sequence[Fraction], made: Kinematics, columns: SpeedCol
 def _rates(model: Mechanism, found: Sequence[Row], columns: SpeedColumns, role: Role, prefix: str) -> dict[str, Any]:
     own = [row for row, (component, _) in zip(found, model.acting, strict=True) if component.role is role]
     return columns.split(f"{prefix}_rate", own) | {
-        f"{prefix}_kind": [number(type(component)) for component, _ in model.acting if component.role is role],
+        f"{prefix}_kind": [number(type(component)) for component, _ in model.acting if component.role is role]
     }
 
 

@@ -23,10 +23,7 @@ class Together:
 
 @explained("cw.together", names="['F1.gain', 'F2.gain']")
 def together(
-    names: Sequence[str] | str,
-    *,
-    factor: tuple[float, float] | None = None,
-    shift: tuple[float, float] | None = None,
+    names: Sequence[str] | str, *, factor: tuple[float, float] | None = None, shift: tuple[float, float] | None = None
 ) -> Together:
     """Several numbers of a driveline as one unknown of `cw.calibrate`, or as one scatter of production.
 

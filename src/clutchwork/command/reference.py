@@ -14,11 +14,7 @@ from clutchwork.declare.purposes import ELEMENT_ROLES, groups
 from clutchwork.declare.schema import Role, specs
 from clutchwork.declare.unit_table import UnitRow, unit_table
 
-ROLES: dict[str, tuple[Role, ...]] = {
-    "elements": ELEMENT_ROLES,
-    "laws": (Role.LAW,),
-    "signals": (Role.SIGNAL,),
-}
+ROLES: dict[str, tuple[Role, ...]] = {"elements": ELEMENT_ROLES, "laws": (Role.LAW,), "signals": (Role.SIGNAL,)}
 PURPOSES = {
     "elements": "list all elements, or all fields of one",
     "laws": "list all friction laws, or all fields of one",

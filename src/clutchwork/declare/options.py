@@ -84,12 +84,7 @@ class Options:
         core=True,
     )
     max_step: float | None = setting(
-        "s",
-        "longest step of the solver (by default there is no limit)",
-        default=None,
-        above=0.0,
-        core=True,
-        unset=inf,
+        "s", "longest step of the solver (by default there is no limit)", default=None, above=0.0, core=True, unset=inf
     )
     max_steps: int = setting(
         "1", "number of steps after which a run stops", default=10_000_000, at_least=1, at_most=MOST_COUNTED, core=True

@@ -106,11 +106,7 @@ def settings_of(run: Recorded) -> dict[str, Any]:
 
 
 def content(
-    run: Recorded,
-    names: Any = None,
-    dt: float | None = None,
-    times: Any = None,
-    units: Mapping[str, str] | None = None,
+    run: Recorded, names: Any = None, dt: float | None = None, times: Any = None, units: Mapping[str, str] | None = None
 ) -> Content:
     """Selects signals, resamples, converts units."""
     known = run.channels

@@ -165,13 +165,7 @@ class ValueReader:
         others = (*spec.units, *at.units)
         return self._converted(
             lambda: in_si(
-                value,
-                at.unit,
-                others,
-                scale.factor,
-                whole=spec.whole,
-                difference=spec.difference,
-                zero=scale.zero,
+                value, at.unit, others, scale.factor, whole=spec.whole, difference=spec.difference, zero=scale.zero
             ),
             at,
         )

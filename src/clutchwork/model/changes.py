@@ -16,16 +16,7 @@ from typing import Any
 from clutchwork.base import ModelError, Problem, near, quote
 from clutchwork.base.errors import nearest
 from clutchwork.base.frozen import Frozen
-from clutchwork.declare.node import (
-    DIRECT,
-    Component,
-    Law,
-    Node,
-    Signal,
-    TabledComposite,
-    ThermalNode,
-    is_reference,
-)
+from clutchwork.declare.node import DIRECT, Component, Law, Node, Signal, TabledComposite, ThermalNode, is_reference
 from clutchwork.declare.schema import Spec, specs
 from clutchwork.declare.to_si import TargetUnit, field_in_si, settled
 from clutchwork.model.components import component_problems

@@ -155,11 +155,7 @@ def runner(name: str) -> Callable[..., Result]:
     cls = EXPERIMENTS[name]
 
     def perform(
-        laws: Laws = None,
-        *,
-        preset: str | Preset | None = None,
-        options: Options = ACCURATE,
-        **changes: Any,
+        laws: Laws = None, *, preset: str | Preset | None = None, options: Options = ACCURATE, **changes: Any
     ) -> Result:
         return made(name, changes).perform(laws, preset=preset, options=options)
 

@@ -78,12 +78,7 @@ class Preset:
         stack = tuple((deflection * self.length, share) for deflection, share in self.elements)
         return {
             "coulomb": {"static": self.static, "kinetic": self.kinetic},
-            "exponential": {
-                "static": self.static,
-                "slow": self.static,
-                "fast": self.kinetic,
-                "speed": self.speed,
-            },
+            "exponential": {"static": self.static, "slow": self.static, "fast": self.kinetic, "speed": self.speed},
             "coefficient_table": {"static": self.static, "kinetic": self._points()},
             "stribeck": curve,
             "karnopp": {**curve, "band": 0.1 * self.speed},

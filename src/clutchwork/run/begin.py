@@ -64,11 +64,7 @@ def choose(run: Any, options: Options) -> None:
 
 
 def state_of(
-    run: Any,
-    system: System,
-    outside: tuple[Held, Mapping[str, Any]],
-    row: bytes | None = None,
-    left: bytes = b"",
+    run: Any, system: System, outside: tuple[Held, Mapping[str, Any]], row: bytes | None = None, left: bytes = b""
 ) -> State:
     """The State of a run whose events were taken.
 

@@ -58,10 +58,7 @@ def indices(
     places = np.arange(len(order))
     with figure_of(HEAD + BAR * len(order)) as figure:
         axes = figure.add_subplot()
-        bars = (
-            (0.2, *total, "total", COLOURS[0]),
-            (-0.2, *first, "first order", COLOURS[1]),
-        )
+        bars = ((0.2, *total, "total", COLOURS[0]), (-0.2, *first, "first order", COLOURS[1]))
         for shift, index, width, label, colour in bars:
             lines = {"ecolor": "black", "elinewidth": 0.8}
             axes.barh(places + shift, index[order], 0.38, xerr=width[order], color=colour, label=label, error_kw=lines)

@@ -65,10 +65,7 @@ def sweep(
     done.
     """
     order, count = ordered("sweep", model, t_end, vary, outputs, options, changes), threads_of(threads)
-    with (
-        followed(progress, len(order), "sweep", "(done, variants)", unit=" runs") as told,
-        warnings.catch_warnings(),
-    ):
+    with followed(progress, len(order), "sweep", "(done, variants)", unit=" runs") as told, warnings.catch_warnings():
         # a value may be rarely wanted; that of a single run is given there
         warnings.simplefilter("ignore", ModelWarning)
         if on is None:
