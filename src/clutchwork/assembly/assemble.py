@@ -248,15 +248,11 @@ def _contacts(model: Mechanism, pools: Pools, wires: Wires, states: list[float])
         "contact_law_param": [pools.add(contact.friction, f"{contact.name}.friction") for contact in contacts],
         "contact_law_input": [wires.connect_law(contact) for contact in contacts],
         "contact_state": offsets,
-        "contact_tolerance": [_tolerance(contact) for contact in contacts],
+        # the band of a law widens it
+        "contact_tolerance": [max(float(contact.tolerance), float(contact.friction.band)) for contact in contacts],
         "contact_initial": [int(contact.locked) for contact in contacts],
         "contact_place": [places[place_of(contact)] if is_stop(contact) else -1 for contact in contacts],
     }
-
-
-def _tolerance(contact: Any) -> float:
-    """Slip below which a contact may lock; the band of a Karnopp law widens it."""
-    return max(float(contact.tolerance), float(contact.friction.band))
 
 
 def _gears(model: Mechanism) -> Iterable[Gearing]:

@@ -199,7 +199,7 @@ class Events(Sequence[Event]):
 
         names, units = [item.name for item in fields(Event)], self.units
         heads = [f"{name} [{units[name]}]" if name in units else name for name in names]
-        lines = ([_exact(value) for value in astuple(event)] for event in self)
+        lines = ([repr(value) if isinstance(value, float) else value for value in astuple(event)] for event in self)
         put_csv(fitting("run.events.to_csv", path, "events.csv", [".csv"]), [heads, *lines])
 
 
@@ -226,7 +226,3 @@ def _event(numbers: dict[str, float], contacts: Sequence[str]) -> Event:
         cause=CAUSES[cause][0],
         **numbers,
     )
-
-
-def _exact(value: object) -> object:
-    return repr(value) if isinstance(value, float) else value

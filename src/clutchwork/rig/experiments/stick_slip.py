@@ -22,8 +22,6 @@ from clutchwork.rig.trial import NOT_REACHED, Runs, Trial
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
-    from clutchwork.run.trajectory import Trajectory
-
 
 @experiment
 @dataclass(frozen=True)
@@ -89,7 +87,7 @@ class StickSlip(Experiment):
         for label, look in looks(result.runs).items():
             run = result[label]
             thin, late = {**look, "linewidth": 0.9}, run.time >= 0.5 * run.time[-1]
-            pull = _pull(run)
+            pull = -np.asarray(run["spring.torque"], dtype=float)
             force.plot(run.time, pull, **thin)
             plane.plot(pull[late], 1e3 * run["body.speed"][late], **thin)
             zoom.plot(run.time[late], 1e3 * run["friction.slip"][late], **thin)
@@ -105,11 +103,6 @@ class StickSlip(Experiment):
         zoom.set_xlabel("time, s")
         zoom.set_ylabel(f"slip, {speed}")
         legend_below(force)
-
-
-def _pull(run: Trajectory) -> np.ndarray:
-    """Force with which the spring pulls the mass back [N]."""
-    return -np.asarray(run["spring.torque"], dtype=float)
 
 
 def _period(time: np.ndarray, pull: np.ndarray, least: float) -> float:
