@@ -12,8 +12,8 @@ from typing import Any, NamedTuple, TypeVar, cast
 from clutchwork.assembly.assemble import assembled
 from clutchwork.assembly.masses import masses
 from clutchwork.assembly.patches import PLAIN, Patch, Unpatched, changed_signals, parameter_place, patched, patches
+from clutchwork.assembly.records import Array
 from clutchwork.assembly.system_data import GROUPS, LATER, MAKES, SystemData
-from clutchwork.base.arrays import Array
 from clutchwork.base.errors import ModelError, Problem, warn
 from clutchwork.base.errors import Problem as Found
 from clutchwork.base.memoize import memoize

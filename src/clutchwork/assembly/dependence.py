@@ -5,8 +5,8 @@ from __future__ import annotations
 from collections.abc import Collection, Mapping, Sequence
 from math import hypot
 
+from clutchwork.assembly.records import Array
 from clutchwork.assembly.sparse import entries
-from clutchwork.base.arrays import Array
 
 ROUND_OFF = 1e-9
 # share of a contact in the direction of another that may still count in the core

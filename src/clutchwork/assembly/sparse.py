@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from clutchwork.base.arrays import Array
+from clutchwork.assembly.records import Array
 from clutchwork.declare.rational import Row
 
 

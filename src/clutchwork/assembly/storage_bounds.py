@@ -7,8 +7,8 @@ from collections.abc import Iterable, Mapping, Sequence
 from itertools import accumulate
 
 from clutchwork.assembly.dependence import dependence
+from clutchwork.assembly.records import Array
 from clutchwork.assembly.sparse import supports
-from clutchwork.base.arrays import Array
 from clutchwork.declare.layout import FEW_SPEEDS
 
 Support = Sequence[int]

@@ -13,11 +13,10 @@ import numpy as np
 
 from clutchwork.assembly.dependence import dependent_sets
 from clutchwork.assembly.patches import Numbered, numbered
-from clutchwork.assembly.records import TYPES, Gearing, Input, Link, frozen
+from clutchwork.assembly.records import TYPES, Array, Gearing, Input, Link, frozen
 from clutchwork.assembly.sparse import dense, entries
 from clutchwork.assembly.storage_bounds import rooms
 from clutchwork.base import ModelError, counted, dataclass, near, quote
-from clutchwork.base.arrays import Array
 from clutchwork.declare.calls import explained_methods
 from clutchwork.declare.core import core
 from clutchwork.declare.layout import COUNTS, FIELDS, SPARSE

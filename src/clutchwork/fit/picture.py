@@ -16,7 +16,7 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
-    from clutchwork.fit.result import FittedLaw
+    from clutchwork.fit.fitted_law import FittedLaw
 
 MEASURED, FITTED, BOUND = COLOURS[0], COLOURS[1], COLOURS[7]
 HEIGHT = 135.0  # mm

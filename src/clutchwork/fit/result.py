@@ -2,18 +2,13 @@
 
 from __future__ import annotations
 
-from dataclasses import field
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from clutchwork.base import dataclass
-from clutchwork.base.arrays import Array
-from clutchwork.declare.node import Law
-from clutchwork.fit.estimates import ParameterEstimates
-from clutchwork.fit.measurement import Measurement
+from clutchwork.fit.fitted_law import FittedLaw
 from clutchwork.fit.picture import picture
 
 if TYPE_CHECKING:
@@ -21,22 +16,6 @@ if TYPE_CHECKING:
 
 # share of samples with a torque of the wrong sign that is worth telling
 AGAINST = 0.01
-
-
-@dataclass(frozen=True, eq=False, kw_only=True)
-class FittedLaw(ParameterEstimates):
-    """A fitted law and how well it describes the samples."""
-
-    law: Law
-    rms: float  # N m, of the residuals over the samples that give an equation
-    samples: Measurement = field(repr=False)
-    fitted: Array = field(repr=False)  # torque of the fitted law at the samples [N m]
-    equations: NDArray[np.bool_] = field(repr=False)  # samples that give an equation; the others only a bound
-
-    @property
-    def residuals(self) -> Array:
-        """Fitted minus measured torque [N m]."""
-        return self.fitted - self.samples.torque
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)

@@ -11,10 +11,9 @@ from typing import Any
 import numpy as np
 
 from clutchwork.base import dataclass
-from clutchwork.base.arrays import Array
 from clutchwork.base.extras import need
 from clutchwork.signals.bases.measured.other_units import own_unit
-from clutchwork.signals.bases.measured.series import CLOCKS, Clock, Series, numbers
+from clutchwork.signals.bases.measured.series import CLOCKS, Array, Clock, Series, numbers
 
 # fields whose name says nothing of what is measured
 BODIES = ("values", "value", "data", "samples", "y")

@@ -10,10 +10,9 @@ from contextlib import contextmanager, suppress
 from pathlib import Path
 from typing import Any, BinaryIO
 
-from clutchwork.base.arrays import Array
 from clutchwork.base.extras import need
 from clutchwork.signals.bases.measured.other_units import own_unit
-from clutchwork.signals.bases.measured.series import CLOCKS, Clock, Series, numbers
+from clutchwork.signals.bases.measured.series import CLOCKS, Array, Clock, Series, numbers
 
 MASTERS = (2, 3)
 TIME = 1

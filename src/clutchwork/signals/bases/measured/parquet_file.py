@@ -9,9 +9,8 @@ from functools import partial
 from pathlib import Path
 from typing import Any
 
-from clutchwork.base.arrays import Array
 from clutchwork.base.extras import need
-from clutchwork.signals.bases.measured.series import ColumnOf, Series, numbers, table
+from clutchwork.signals.bases.measured.series import Array, ColumnOf, Series, numbers, table
 
 
 @contextmanager

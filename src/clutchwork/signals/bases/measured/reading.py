@@ -8,12 +8,11 @@ from pathlib import Path
 import numpy as np
 
 from clutchwork.base import FileError, listed, near, quote
-from clutchwork.base.arrays import Array
 from clutchwork.signals.bases import column_file, sheets
 from clutchwork.signals.bases.column_file import MOST_FAULTS, MOST_LINES, ColumnRequest, ColumnValues
 from clutchwork.signals.bases.column_heads import ColumnHead
 from clutchwork.signals.bases.measured.formats import format_of, opened
-from clutchwork.signals.bases.measured.series import Clock, Series
+from clutchwork.signals.bases.measured.series import Array, Clock, Series
 
 Faults = list[tuple[str, str, str]]
 
