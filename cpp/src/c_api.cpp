@@ -17,6 +17,7 @@ struct cw_run {
   std::uint64_t fingerprint;  ///< of the system
   unsigned char* arrays;
   std::int64_t bytes;
+  mutable saved::Measure measure;  ///< of its states, taken once: it follows from the system
 };
 
 namespace {
@@ -104,10 +105,9 @@ void move_pointers(cw_run* run, const cw_run& other) {
   for (std::int64_t i = 0; i < ws.sys.inputs; ++i) moved(ws.in.signal[i].coef);
 }
 
-saved::Measure measured(const cw_run* run) {
-  saved::Measure m;
-  saved::describe(run->ws, m);
-  return m;
+const saved::Measure& measured(const cw_run* run) {
+  if (run->measure.size == 0) saved::describe(run->ws, run->measure);
+  return run->measure;
 }
 
 /// What stands before the states of a run, the checksum left out.
@@ -411,7 +411,7 @@ std::int64_t cw_state_size(const cw_run* run) {
 
 std::int64_t cw_save(const cw_run* run, void* bytes, std::int64_t room) {
   if (run == nullptr || bytes == nullptr) return -1;
-  const saved::Measure m = measured(run);
+  const saved::Measure& m = measured(run);
   const std::int64_t size = state_head::bytes + m.size + saved::set_bytes(run->ws);
   const Head head(run, m, size);
   if (room < size) return -1;
@@ -428,7 +428,7 @@ std::int64_t cw_save(const cw_run* run, void* bytes, std::int64_t room) {
 int cw_restore(cw_run* run, const void* bytes, std::int64_t n) {
   if (run == nullptr || bytes == nullptr) return 0;
   const auto* from = static_cast<const unsigned char*>(bytes);
-  const saved::Measure m = measured(run);
+  const saved::Measure& m = measured(run);
   const Head head(run, m, n);
   const std::int64_t set = state_head::bytes + m.size;
   if (n < set || std::memcmp(from, head.word, 8 * state_head::checksum) != 0) return 0;

@@ -67,7 +67,8 @@ class Run {
     const std::int64_t size = cw_size(system_.c_str(), std::int64_t(system_.size()));
     if (size < 0)
       throw nb::value_error("the system bytes do not fit this core: assemble the driveline again with this version");
-    memory_ = std::make_unique<Block[]>(std::size_t(size + 63) / 64);
+    // the core clears it
+    memory_.reset(new Block[std::size_t(size + 63) / 64]);
     size_ = size;
     run_ = cw_load(system_.c_str(), std::int64_t(system_.size()), memory_.get(), size);
     if (run_ == nullptr) throw nb::value_error("the run could not be started from these system bytes");

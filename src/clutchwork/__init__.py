@@ -18,7 +18,7 @@ from __future__ import annotations
 from importlib import import_module
 from typing import Any
 
-from clutchwork.base.errors import near
+from clutchwork.base import near
 from clutchwork.declare import HeatFlow, Node, Rate, SupplyPower, ThermalNode
 from clutchwork.declare.calls import explain
 from clutchwork.declare.core import core

@@ -13,7 +13,7 @@ import clutchwork as cw
 from clutchwork.diagrams.marks import Label, Polyline
 from clutchwork.diagrams.picture import svg_text
 from clutchwork.diagrams.speed import chart, plan
-from clutchwork.diagrams.speed.spread import spread
+from clutchwork.diagrams.speed.plan import spread
 from clutchwork.gearbox.gear_set import HOUSING
 from support import drawings
 from support.drawn_gearboxes import BOXES

@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 
 import clutchwork as cw
-import clutchwork.fit.temperature
+import clutchwork.fit.law
 from clutchwork.declare.schema import Spec
 from clutchwork.fit import FitError, fit_law
 from support import rig_data
@@ -118,7 +118,7 @@ def test_experiments_stay_inside_a_table_that_must_not_be_left() -> None:
 
 def test_inputs_that_no_fit_can_give(monkeypatch: pytest.MonkeyPatch) -> None:
     wet = [(["wetness"], Spec("signal", "1", "wetness of the lining"))]
-    monkeypatch.setattr(clutchwork.fit.temperature, "inputs", lambda cls: iter(wet))
+    monkeypatch.setattr(clutchwork.fit.law, "inputs", lambda cls: iter(wet))
     with pytest.raises(FitError, match="wetness drives Stribeck, and a fit supports no signal other than"):
         fit_law(LAW, **good())
 

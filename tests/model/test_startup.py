@@ -19,7 +19,7 @@ IMPORT = {
     *("base.verbs", "face", "face.names", "face.verbs", "_core"),
 }
 SIMULATE = {
-    *("base.memoize", "results", "results.events", "results.recorded"),
+    *("base.arrays", "base.memoize", "results", "results.events", "results.recorded"),
     *("run", "run.begin", "run.control", "run.exports", "run.jumps", "run.record", "run.settings", "run.simulation"),
     "run.trajectory",
 }

@@ -10,7 +10,7 @@ import pytest
 import clutchwork as cw
 from clutchwork import rig
 from clutchwork.declare.schema import REGISTRY, Role, inputs
-from clutchwork.rig.chosen import chosen
+from clutchwork.rig.experiment import chosen
 
 FIRST = rig.PRESETS["first"]
 

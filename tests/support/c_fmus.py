@@ -10,7 +10,7 @@ from pathlib import Path
 from tempfile import mkdtemp
 from zipfile import ZipFile
 
-from clutchwork.fmu_import.platforms import places
+from clutchwork.fmu_import.fmu import places
 
 COMPILER = shutil.which("cc")
 

@@ -7,7 +7,7 @@ from typing import Any
 from hypothesis import strategies as st
 
 import clutchwork as cw
-from clutchwork.diagrams.machines import with_machines
+from clutchwork.diagrams.draw import with_machines
 
 from .gearboxes import EIGHT_SPEED, changed
 

@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import replace
+from fractions import Fraction
 from functools import partial
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -15,7 +17,7 @@ from clutchwork.assembly.places import places
 from clutchwork.assembly.records import TYPES, Gearing, frozen
 from clutchwork.assembly.shared_states import Shared, flow_arrays, heat_arrays
 from clutchwork.assembly.sparse import sparse
-from clutchwork.base.errors import ModelError
+from clutchwork.base import ModelError
 from clutchwork.declare.core import number
 from clutchwork.declare.layout import FIELDS
 from clutchwork.declare.node import TabledComposite, is_reference
@@ -31,11 +33,6 @@ from clutchwork.model.pools import Pools
 from clutchwork.model.start import Started, initial_angles, speed_at_start, start
 from clutchwork.model.structure import Kinematics, Mechanism, follows_load
 from clutchwork.model.variable_ratios import ordered, transmissions
-
-if TYPE_CHECKING:
-    from collections.abc import Callable, Iterable, Mapping, Sequence
-    from fractions import Fraction
-
 
 Array = NDArray[Any]
 
@@ -177,7 +174,7 @@ def mass_arrays(inertia: Sequence[Fraction], made: Kinematics, columns: SpeedCol
 def _rates(model: Mechanism, found: Sequence[Row], columns: SpeedColumns, role: Role, prefix: str) -> dict[str, Any]:
     own = [row for row, (component, _) in zip(found, model.acting, strict=True) if component.role is role]
     return columns.split(f"{prefix}_rate", own) | {
-        f"{prefix}_kind": [number(type(component)) for component, _ in model.acting if component.role is role],
+        f"{prefix}_kind": [number(type(component)) for component, _ in model.acting if component.role is role]
     }
 
 
@@ -251,15 +248,11 @@ def _contacts(model: Mechanism, pools: Pools, wires: Wires, states: list[float])
         "contact_law_param": [pools.add(contact.friction, f"{contact.name}.friction") for contact in contacts],
         "contact_law_input": [wires.connect_law(contact) for contact in contacts],
         "contact_state": offsets,
-        "contact_tolerance": [_tolerance(contact) for contact in contacts],
+        # the band of a law widens it
+        "contact_tolerance": [max(float(contact.tolerance), float(contact.friction.band)) for contact in contacts],
         "contact_initial": [int(contact.locked) for contact in contacts],
         "contact_place": [places[place_of(contact)] if is_stop(contact) else -1 for contact in contacts],
     }
-
-
-def _tolerance(contact: Any) -> float:
-    """Slip below which a contact may lock; the band of a Karnopp law widens it."""
-    return max(float(contact.tolerance), float(contact.friction.band))
 
 
 def _gears(model: Mechanism) -> Iterable[Gearing]:

@@ -7,16 +7,18 @@ from copy import deepcopy
 from dataclasses import fields, replace
 from functools import cache, partial
 from types import MappingProxyType
-from typing import TYPE_CHECKING, Any, NamedTuple, TypeVar, cast
+from typing import Any, NamedTuple, TypeVar, cast
 
 from clutchwork.assembly.assemble import assembled
 from clutchwork.assembly.masses import masses
 from clutchwork.assembly.patches import PLAIN, Patch, Unpatched, changed_signals, parameter_place, patched, patches
+from clutchwork.assembly.records import Array
 from clutchwork.assembly.system_data import GROUPS, LATER, MAKES, SystemData
 from clutchwork.base.errors import ModelError, Problem, warn
+from clutchwork.base.errors import Problem as Found
 from clutchwork.base.memoize import memoize
 from clutchwork.declare.node import Component, Law, Node, Signal
-from clutchwork.declare.schema import specs
+from clutchwork.declare.schema import Spec, specs
 from clutchwork.declare.wording import words_of_files
 from clutchwork.model.changes import Owners, Renewed, Target, changed_model, named, renewed, target, with_values
 from clutchwork.model.components import component_advice, component_problems
@@ -27,11 +29,6 @@ from clutchwork.model.numbers import is_right as is_right_number
 from clutchwork.model.parts import role
 from clutchwork.model.problems import TOO_FAR_APART
 from clutchwork.model.temperatures import temperature_advice
-
-if TYPE_CHECKING:
-    from clutchwork.assembly.records import Array
-    from clutchwork.base.errors import Problem as Found
-    from clutchwork.declare.schema import Spec
 
 S = TypeVar("S", bound=SystemData)
 

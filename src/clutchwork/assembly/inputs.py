@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from clutchwork.assembly.records import Input, Link
-from clutchwork.base.classes import dataclass
+from clutchwork.base import dataclass
 from clutchwork.declare.node import Node, Segment, Signal, ThermalNode, is_reference
 from clutchwork.declare.ports import ports, thermal_ports
 from clutchwork.declare.schema import Role, Spec, inputs, specs

@@ -12,8 +12,7 @@ from typing import TYPE_CHECKING, Any
 from clutchwork.assembly.assemble import SpeedColumns, assembled, chosen
 from clutchwork.assembly.patches import Patch, patched
 from clutchwork.assembly.sparse import supports
-from clutchwork.base.classes import dataclass
-from clutchwork.base.errors import ModelError
+from clutchwork.base import ModelError, dataclass
 from clutchwork.base.memoize import memoize
 from clutchwork.declare.node import Component
 from clutchwork.declare.rational import ZERO, exact

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from typing import Any
 
-from clutchwork.base.classes import dataclass
+from clutchwork.base import dataclass
 from clutchwork.declare.node import DIRECT, Component, HeatFlow, Node, Rate, SupplyPower, ThermalNode
 from clutchwork.model.parts import sensor_name, state_name
 

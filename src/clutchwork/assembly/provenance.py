@@ -12,7 +12,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from functools import cached_property, partial
 from itertools import chain, islice
 from numbers import Real
-from typing import TYPE_CHECKING, Any, TypeAlias
+from typing import Any, TypeAlias
 
 import numpy as np
 from numpy.typing import NDArray
@@ -21,16 +21,13 @@ from clutchwork.assembly.changes import UNKNOWN_SOURCE, changed_system, owners_o
 from clutchwork.assembly.during_runs import NOTHING, OTHER, SIGNAL, Stays, stays
 from clutchwork.assembly.inputs import plain_signal
 from clutchwork.assembly.masses import is_mass, masses
-from clutchwork.base.classes import dataclass
-from clutchwork.base.errors import ModelError, ModelWarning, near
+from clutchwork.assembly.system_data import SystemData
+from clutchwork.base import ModelError, ModelWarning, dataclass, near
 from clutchwork.base.memoize import memoize
 from clutchwork.declare.node import Signal
+from clutchwork.declare.schema import Spec
 from clutchwork.model.changes import SIGNALS, Target, all_names, field_of, renewed, target, unit_of
 from clutchwork.signals.table import Table
-
-if TYPE_CHECKING:
-    from clutchwork.assembly.system_data import SystemData
-    from clutchwork.declare.schema import Spec
 
 Places = NDArray[np.int64]
 Reach = Mapping[str, Places]

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
-from clutchwork.base.classes import dataclass
+from clutchwork.base import dataclass
 from clutchwork.declare.core import number
 from clutchwork.declare.node import Component
 from clutchwork.declare.ports import thermal_ports

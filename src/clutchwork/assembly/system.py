@@ -16,9 +16,8 @@ from clutchwork.assembly.changes import changed_system
 from clutchwork.assembly.provenance import SystemParameters
 from clutchwork.assembly.records import TYPES, frozen
 from clutchwork.assembly.system_data import MAGIC, SystemData
-from clutchwork.base.classes import dataclass
-from clutchwork.base.errors import ClutchworkError, UseError
-from clutchwork.base.quote import quote, shortened
+from clutchwork.base import ClutchworkError, UseError, dataclass, quote
+from clutchwork.base.quote import shortened
 from clutchwork.declare.calls import explained, explained_methods
 from clutchwork.declare.core import core
 from clutchwork.declare.layout import COUNTS, FIELDS

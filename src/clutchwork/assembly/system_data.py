@@ -16,10 +16,7 @@ from clutchwork.assembly.patches import Numbered, numbered
 from clutchwork.assembly.records import TYPES, Array, Gearing, Input, Link, frozen
 from clutchwork.assembly.sparse import dense, entries
 from clutchwork.assembly.storage_bounds import rooms
-from clutchwork.base.classes import dataclass
-from clutchwork.base.errors import ModelError, near
-from clutchwork.base.plural import counted
-from clutchwork.base.quote import quote
+from clutchwork.base import ModelError, counted, dataclass, near, quote
 from clutchwork.declare.calls import explained_methods
 from clutchwork.declare.core import core
 from clutchwork.declare.layout import COUNTS, FIELDS, SPARSE

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
-from clutchwork.base.classes import dataclass
+from clutchwork.base import dataclass
 from clutchwork.base.memoize import memoize
 from clutchwork.declare.layout import ROW
 from clutchwork.declare.node import Component, Domain, Node

@@ -4,15 +4,13 @@ from __future__ import annotations
 
 import inspect
 import warnings
+from collections.abc import Iterable, Sequence
 from itertools import islice
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 from clutchwork.base.classes import dataclass
 from clutchwork.base.plural import counted
 from clutchwork.base.quote import LONGEST, printable, quote, shortened
-
-if TYPE_CHECKING:
-    from collections.abc import Iterable, Sequence
 
 
 @dataclass(frozen=True, repr=False)

@@ -6,10 +6,9 @@ import os
 from collections.abc import Callable, Mapping, Sequence
 from typing import TYPE_CHECKING, Any, Unpack
 
-from clutchwork.base.errors import UseError, near
+from clutchwork.base import UseError, near, quote
 from clutchwork.base.paths import path_fault, path_of
 from clutchwork.base.progress import followed
-from clutchwork.base.quote import quote
 from clutchwork.calibration.limits import Limit
 from clutchwork.calibration.memory import Checkpoint
 from clutchwork.calibration.problem import CalibrationProblem, Mistakes, problem, refuse_bounds

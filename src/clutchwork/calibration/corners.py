@@ -15,6 +15,7 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from clutchwork.base.arrays import Array
 from clutchwork.base.extras import need
 from clutchwork.calibration.optimal import CLOSE
 from clutchwork.calibration.outcome import FEASIBLE, OPTIMAL
@@ -24,7 +25,6 @@ if TYPE_CHECKING:
     from clutchwork.calibration.evaluate import Evaluation
     from clutchwork.calibration.scaled import Scaled
 
-Array = NDArray[np.float64]
 # how far neighbours are, in shares of the bounds
 RADIUS = 1e-3
 # weight of factors that sum up to one, in the largest gradient

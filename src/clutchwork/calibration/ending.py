@@ -8,15 +8,14 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 import numpy as np
-from numpy.typing import NDArray
 
+from clutchwork.base.arrays import Array
 from clutchwork.calibration.optimal import certificate
 from clutchwork.calibration.rows import measure
 
 if TYPE_CHECKING:
     from clutchwork.calibration.scaled import Scaled
 
-Array = NDArray[np.float64]
 # what may be left of the gradient, and of limits, in shares of their scales
 RESIDUAL, VIOLATION = 3e-7, 1e-8
 # what a limit that is broken by its scale costs, in goals; and by how much of itself a point may be worse than the best

@@ -8,10 +8,9 @@ from functools import cached_property
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from numpy.typing import NDArray
 
-from clutchwork.base.classes import dataclass
-from clutchwork.base.errors import ModelError
+from clutchwork.base import ModelError, dataclass
+from clutchwork.base.arrays import Array
 from clutchwork.calibration.moves import Moves
 from clutchwork.calibration.terms import TermData, length
 from clutchwork.results.gradient import NoGradient
@@ -20,7 +19,6 @@ if TYPE_CHECKING:
     from clutchwork.calibration.limits import WeightedSum
     from clutchwork.calibration.problem import CalibrationProblem
 
-Array = NDArray[np.float64]
 # solvers ask for values and gradients of a few points in turn
 REMEMBERED = 8
 # of differences where there is no gradient, in shares of the bounds: wider than what grazes

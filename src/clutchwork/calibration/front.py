@@ -8,15 +8,12 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from numpy.typing import NDArray
 
-from clutchwork.base.classes import dataclass
-from clutchwork.base.errors import UseError
+from clutchwork.base import UseError, columns, dataclass, quote
+from clutchwork.base.arrays import Array
 from clutchwork.base.extras import need
 from clutchwork.base.paths import fitting
-from clutchwork.base.plural import columns
 from clutchwork.base.progress import followed
-from clutchwork.base.quote import quote
 from clutchwork.calibration.record import CalibrationError, CalibrationRecord
 from clutchwork.plot.chosen import PICTURES
 from clutchwork.plot.figure import figure_of, written
@@ -27,7 +24,6 @@ if TYPE_CHECKING:
     from clutchwork.calibration.limits import Settled
     from clutchwork.plot.canvas import Picture
 
-Array = NDArray[np.float64]
 HEIGHT = 80.0  # mm
 
 

@@ -3,14 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
-from clutchwork.base.classes import dataclass
-from clutchwork.base.errors import UseError
-from clutchwork.base.quote import quote
+from clutchwork.base import UseError, dataclass, quote
+from clutchwork.base.arrays import Array
+from clutchwork.calibration.names import TimeTable
 from clutchwork.calibration.terms import (
     Jerk,
     OutputUnits,
@@ -27,10 +26,6 @@ from clutchwork.calibration.terms import (
 from clutchwork.declare.calls import explained
 from clutchwork.sweeps.numbers import bounds, number
 
-if TYPE_CHECKING:
-    from clutchwork.calibration.names import TimeTable
-
-Array = NDArray[np.float64]
 SUCH = "give an output such as 'c1.heat', cw.lock('c1'), cw.jerk('car'), or {output: weight, ...}"
 
 

@@ -5,8 +5,8 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 import numpy as np
-from numpy.typing import NDArray
 
+from clutchwork.base.arrays import Array
 from clutchwork.base.extras import need
 from clutchwork.calibration.moves import Moves
 from clutchwork.calibration.rows import Row, rows_of, size_of
@@ -16,8 +16,6 @@ from clutchwork.calibration.together import VALUE
 if TYPE_CHECKING:
     from clutchwork.calibration.limits import Settled
     from clutchwork.calibration.problem import CalibrationProblem
-
-Array = NDArray[np.float64]
 
 
 def is_linear_table(problem: CalibrationProblem, stem: str) -> bool:

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from clutchwork.base.errors import UseError
+from clutchwork.base import UseError
 from clutchwork.base.writing import put
 from clutchwork.calibration.outcome import Outcome
 

@@ -5,8 +5,7 @@ from __future__ import annotations
 import re
 from typing import TYPE_CHECKING, Any
 
-from clutchwork.base.classes import dataclass
-from clutchwork.base.errors import UseError
+from clutchwork.base import UseError, dataclass
 from clutchwork.gradients.parameters import parameters
 
 if TYPE_CHECKING:

@@ -8,16 +8,15 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 import numpy as np
-from numpy.typing import NDArray
 
-from clutchwork.base.classes import dataclass
+from clutchwork.base import dataclass
+from clutchwork.base.arrays import Array
 from clutchwork.base.extras import need
 from clutchwork.calibration.rows import ConstraintBlock, Row
 
 if TYPE_CHECKING:
     from clutchwork.calibration.scaled import Scaled
 
-Array = NDArray[np.float64]
 # limits and bounds that are closer than this are active, in scaled numbers
 CLOSE = 1e-5
 

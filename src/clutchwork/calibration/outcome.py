@@ -3,11 +3,10 @@
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import NDArray
 
-from clutchwork.base.classes import dataclass
+from clutchwork.base import dataclass
+from clutchwork.base.arrays import Array
 
-Array = NDArray[np.float64]
 # limits may be broken by so much, in shares of their scale
 FEASIBLE = 1e-6
 # what is left of a gradient, in shares of the goal over the ranges of the unknowns

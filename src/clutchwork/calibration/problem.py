@@ -4,28 +4,22 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from functools import cached_property, partial
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
-from clutchwork.base.classes import dataclass
-from clutchwork.base.errors import ModelError, UseError
+from clutchwork.assembly.system import System
+from clutchwork.base import ModelError, UseError, dataclass, quote
+from clutchwork.base.arrays import Array
 from clutchwork.base.errors import Problem as Wrong
-from clutchwork.base.quote import quote
 from clutchwork.calibration.limits import Limit, Settled, WeightedSum, summed
 from clutchwork.calibration.moves import Moves, Variable
 from clutchwork.calibration.names import TimeTable, curve, numbers
 from clutchwork.calibration.terms import OutputUnits, SquaredSlope, TimeSpan
 from clutchwork.calibration.together import FACTOR, VALUE, Together
-from clutchwork.gradients.parameters import changes
+from clutchwork.gradients.parameters import Tunable, changes
 from clutchwork.sweeps.numbers import pair
 
-if TYPE_CHECKING:
-    from clutchwork.assembly.system import System
-    from clutchwork.gradients.parameters import Tunable
-
-Array = NDArray[np.float64]
 # of bounds, in shares of themselves: a start that is out by no more is at its bound
 ROUND_OFF = 1e-9
 SUCH = "{'c1.pressure.values[2:]': (0.0, 8e5)}"

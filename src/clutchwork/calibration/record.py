@@ -5,28 +5,22 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import field
 from functools import cached_property
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
-from clutchwork.base.classes import dataclass
-from clutchwork.base.errors import ClutchworkError
+from clutchwork.assembly.system import System
+from clutchwork.base import ClutchworkError, dataclass
+from clutchwork.base.arrays import Array
 from clutchwork.calibration.held import Held
 from clutchwork.calibration.moves import Moves
 from clutchwork.calibration.optimal import Certificate
 from clutchwork.calibration.outcome import OPTIMAL, Outcome
-from clutchwork.calibration.problem import changed_by
+from clutchwork.calibration.problem import CalibrationProblem, changed_by
 from clutchwork.declare.calls import explained_methods
+from clutchwork.declare.options import Options
 from clutchwork.run.simulation import simulate
-
-if TYPE_CHECKING:
-    from clutchwork.assembly.system import System
-    from clutchwork.calibration.problem import CalibrationProblem
-    from clutchwork.declare.options import Options
-    from clutchwork.run.trajectory import Trajectory
-
-Array = NDArray[np.float64]
+from clutchwork.run.trajectory import Trajectory
 
 
 class CalibrationError(ClutchworkError, RuntimeError):

@@ -2,15 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from numpy.typing import NDArray
 
-from clutchwork.base.errors import UseError, near
-from clutchwork.base.quote import quote
+from clutchwork.base import UseError, near, quote
+from clutchwork.base.arrays import Array
 from clutchwork.calibration import words
 from clutchwork.calibration.corners import left
 from clutchwork.calibration.evaluate import Evaluator
@@ -18,18 +17,20 @@ from clutchwork.calibration.front import Front, front
 from clutchwork.calibration.held import Held
 from clutchwork.calibration.optimal import Certificate, certificate
 from clutchwork.calibration.outcome import FEASIBLE, OPTIMAL
-from clutchwork.calibration.picture import before_and_after
 from clutchwork.calibration.record import CalibrationError, CalibrationRecord, SearchSettings
 from clutchwork.calibration.scaled import Scaled
+from clutchwork.calibration.terms import Jerk, OutputTerm, RmsJerk, SquaredSlope, TableSlope
 from clutchwork.calibration.verify import Verified, verify
 from clutchwork.declare.calls import explained_methods
+from clutchwork.plot.compare import compare
 
 if TYPE_CHECKING:
     from clutchwork.calibration.limits import Settled
     from clutchwork.calibration.search import MultiStartSearch
     from clutchwork.plot.canvas import Picture
 
-Array = NDArray[np.float64]
+
+MOST_PANELS = 5
 
 
 class CalibrationInterrupted(KeyboardInterrupt):
@@ -151,3 +152,37 @@ def _held(limit: Settled, before: Array, after: Array, proof: Certificate, numbe
     )
     bounds = (limit.lower, limit.upper, ends[0], ends[1])
     return Held(limit.name, limit.unit, *bounds, bool(mine), not limit.violation(after) <= room, by_lower, by_upper)
+
+
+def before_and_after(found: CalibrationRecord, signals: Sequence[Any], path: str | Path | None) -> Picture:
+    """Both runs over each other."""
+    runs = {"before": found.run_before(), "after": found.run()}
+    chosen = list(signals) or usual(found, set(runs["after"].names))
+    return compare(runs, *chosen, path=path)
+
+
+def usual(found: CalibrationRecord, known: set[str]) -> list[str]:
+    """Signals that the free numbers, the goal and the limits are about."""
+    return list(dict.fromkeys(name for name in _signals(found) if name in known))[:MOST_PANELS]
+
+
+def _signals(found: CalibrationRecord) -> Iterator[str]:
+    problem = found.problem
+    for one in problem.unknowns:
+        for name in one.numbers:
+            yield name.partition(".values[")[0].partition(".times[")[0]
+    for what in (problem.goal, *(limit.what for limit in problem.limits)):
+        for term, _ in what.terms:
+            yield from _of(term)
+
+
+def _of(term: Any) -> Iterator[str]:
+    if isinstance(term, Jerk | RmsJerk):
+        yield f"{term.shaft}.acceleration"
+    elif isinstance(term, TableSlope | SquaredSlope):
+        yield term.stem
+    elif isinstance(term, OutputTerm):
+        contact = getattr(term.output, "contact", "")
+        owner = contact or str(getattr(term.output, "signal", "")).rpartition(".")[0]
+        yield from (f"{contact}.slip", f"{contact}.torque") if contact else (str(getattr(term.output, "signal", "")),)
+        yield f"{owner}.torque"

@@ -6,13 +6,13 @@ from collections.abc import Iterator, Sequence
 from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
+
+from clutchwork.base.arrays import Array
 
 if TYPE_CHECKING:
     from clutchwork.calibration.evaluate import Evaluation
     from clutchwork.calibration.limits import Settled
 
-Array = NDArray[np.float64]
 # a goal that is a smaller share of that at the start is none: what is left of its gradient is measured by the start's
 NOTHING = 1e-6
 

@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from clutchwork.base.arrays import Array
 from clutchwork.calibration.linear import LinearLimits, is_linear_table, without_run
 from clutchwork.calibration.rows import ConstraintBlock, Row, measure, rows_of, size_of
 from clutchwork.calibration.terms import SquaredSlope
@@ -19,7 +20,6 @@ from clutchwork.calibration.terms import SquaredSlope
 if TYPE_CHECKING:
     from clutchwork.calibration.evaluate import Evaluation, Evaluator
 
-Array = NDArray[np.float64]
 # how far the first search goes, in shares of the bounds
 FIRST_REACH = 0.2
 # a value that no solver takes for an improvement, in scaled numbers

@@ -11,9 +11,9 @@ from itertools import product
 from typing import TYPE_CHECKING
 
 import numpy as np
-from numpy.typing import NDArray
 
-from clutchwork.base.classes import dataclass
+from clutchwork.base import dataclass
+from clutchwork.base.arrays import Array
 from clutchwork.base.extras import need
 from clutchwork.calibration.moves import Moves
 from clutchwork.calibration.scaled import Samples, Scaled
@@ -23,7 +23,6 @@ if TYPE_CHECKING:
     from clutchwork.calibration.moves import Variable
     from clutchwork.calibration.problem import CalibrationProblem
 
-Array = NDArray[np.float64]
 Solve = Callable[[Scaled], Array]
 # samples that the solver begins with at most, nominal among them, and whose mean the goal is; and corners beside them
 FIRST, FEW = 9, 4

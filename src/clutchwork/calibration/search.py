@@ -9,8 +9,8 @@ from threading import Event
 from typing import TYPE_CHECKING
 
 import numpy as np
-from numpy.typing import NDArray
 
+from clutchwork.base.arrays import Array
 from clutchwork.calibration.corners import left, left_behind
 from clutchwork.calibration.evaluate import Evaluation, Evaluator
 from clutchwork.calibration.linear import LinearLimits
@@ -25,7 +25,6 @@ if TYPE_CHECKING:
     from clutchwork.calibration.memory import Checkpoint
     from clutchwork.calibration.problem import CalibrationProblem
 
-Array = NDArray[np.float64]
 Progress = Callable[[int], None] | None
 
 

@@ -9,14 +9,12 @@ from contextlib import suppress
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
+from clutchwork.base.arrays import Array
 from clutchwork.base.extras import need
 from clutchwork.calibration.ending import Ending, SearchEnded
 from clutchwork.calibration.rows import ConstraintBlock, Row
 from clutchwork.calibration.scaled import Scaled
-
-Array = NDArray[np.float64]
 
 
 def slsqp(scaled: Scaled, ending: Ending, iterations: int) -> Array:

@@ -3,26 +3,25 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
+from functools import cached_property
 from typing import TYPE_CHECKING
 
 import numpy as np
-from numpy.typing import NDArray
 
-from clutchwork.base.classes import dataclass
+from clutchwork.base import dataclass
+from clutchwork.base.arrays import Array
 from clutchwork.calibration.ending import Ending
-from clutchwork.calibration.feasibility import Restoring
 from clutchwork.calibration.optimal import certificate
 from clutchwork.calibration.outcome import FEASIBLE
-from clutchwork.calibration.rows import measure, size_of
+from clutchwork.calibration.rows import ConstraintBlock, Row, measure, size_of
 from clutchwork.calibration.scaled import FIRST_REACH, Samples, Scaled
 from clutchwork.calibration.scatter import Scatter, sobol
 from clutchwork.calibration.slsqp import slsqp
 from clutchwork.calibration.trust_region_lp import walked
 
 if TYPE_CHECKING:
-    from clutchwork.calibration.evaluate import Evaluator
+    from clutchwork.calibration.evaluate import Evaluation, Evaluator
 
-Array = NDArray[np.float64]
 # times that a search begins anew, what may be left of the gradient, and what counts as better, in shares of the goal
 MOST_AGAIN, ENOUGH, LITTLE = 3, 1e-6, 1e-3
 # the same where steps in boxes end, in a corner
@@ -35,6 +34,10 @@ NEAR = 0.1
 SHORTEST = 1e-2
 # points that are run for each start, of which the best is taken
 PILOTS = 8
+# limits count as held with so much to spare, in shares of their scale
+SPARE = 1e-3
+# or with so much of the band between two bounds
+BAND = 0.4
 
 
 @dataclass(frozen=True)
@@ -132,3 +135,54 @@ def best_of(evaluator: Evaluator, points: Sequence[Array], count: int) -> list[A
     goal = np.max(values[:, evaluator.parts[0]], axis=1)
     order = np.lexsort((goal, np.where(np.isfinite(over + goal), over, np.inf)))
     return [points[place] for place in order[:count]]
+
+
+class Restoring(Scaled):
+    """The same unknowns and limits; the goal is by how much the worst limit is broken, one unknown more."""
+
+    def __init__(self, other: Scaled, x: Array) -> None:
+        samples = Samples(tuple(other.samples), other.averaged, True)
+        super().__init__(other.evaluator, x, samples, other.scales)
+        self.goal_scale = 1.0
+        self.begin(self.start, self.reach)
+
+    def lifted(self, y: Array, found: Evaluation) -> Array:
+        """The same unknowns, and by how much the worst limit is broken."""
+        if not found.is_fine:
+            return y.copy()
+        return np.append(y[:-1], -np.min(self._block.values(found, y)) if self.rows else -1.0)
+
+    def is_enough(self, y: Array) -> bool:
+        """Whether all limits hold, those that need no run too."""
+        matrix, ends = self.linear
+        return bool(y[-1] <= self._enough and np.all(matrix @ y <= ends + FEASIBLE))
+
+    @cached_property
+    def _enough(self) -> float:
+        """The margin in the middle of a narrow band is less than half of it; an equation has none."""
+        made = [
+            FEASIBLE if one.is_equal else max(-SPARE, -BAND * (one.upper - one.lower) / scale)
+            for one, scale in zip(self.problem.limits, self.scales, strict=True)
+        ]
+        return max(made, default=-SPARE)
+
+    @cached_property
+    def rows(self) -> list[Row]:
+        """All limits that need a run; an equation is two inequalities."""
+        limits = (one for one in super().rows if one.limit >= 0)
+        return [one._replace(sign=sign) for one in limits for sign in ((1.0, -1.0) if one.sign == 0.0 else (one.sign,))]
+
+    @cached_property
+    def _block(self) -> ConstraintBlock:
+        return ConstraintBlock(self.rows)
+
+    def values_at(self, found: Evaluation, y: Array, block: ConstraintBlock) -> Array:
+        """What must not be negative: room up to the bounds, and what may be broken."""
+        made: Array = super().values_at(found, y, block) + y[-1]
+        return made
+
+    def slopes(self, y: Array, block: ConstraintBlock) -> Array:
+        """Their derivatives."""
+        made = super().slopes(y, block)
+        made[:, -1] = 1.0
+        return made

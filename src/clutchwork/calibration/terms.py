@@ -6,15 +6,16 @@ Each term gives one number or several with their derivatives by the numbers of t
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from typing import TYPE_CHECKING, Any, ClassVar, NamedTuple, Protocol, TypeAlias
+from typing import Any, ClassVar, NamedTuple, Protocol, TypeAlias
 
 import numpy as np
-from numpy.typing import NDArray
 
-from clutchwork.base.classes import dataclass
-from clutchwork.base.errors import UnknownName, UseError
-from clutchwork.calibration.names import curve
+from clutchwork.assembly.system import System
+from clutchwork.base import UnknownName, UseError, dataclass
+from clutchwork.base.arrays import Array
+from clutchwork.calibration.names import TimeTable, curve
 from clutchwork.declare.calls import explained
+from clutchwork.gradients.parameters import Tunable
 from clutchwork.results.channels import channels
 from clutchwork.sweeps.outputs import (
     AtEnd,
@@ -30,12 +31,6 @@ from clutchwork.sweeps.outputs import (
 )
 from clutchwork.sweeps.result import JERKS, unit_of
 
-if TYPE_CHECKING:
-    from clutchwork.assembly.system import System
-    from clutchwork.calibration.names import TimeTable
-    from clutchwork.gradients.parameters import Tunable
-
-Array = NDArray[np.float64]
 OUTPUTS = (AtEnd, AtTimes, Extreme, Integral, SquaredJerk, When)
 
 

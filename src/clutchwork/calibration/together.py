@@ -4,9 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from clutchwork.base.classes import dataclass
-from clutchwork.base.errors import UseError
-from clutchwork.base.quote import quote
+from clutchwork.base import UseError, dataclass, quote
 from clutchwork.declare.calls import explained
 from clutchwork.sweeps.numbers import pair
 
@@ -25,10 +23,7 @@ class Together:
 
 @explained("cw.together", names="['F1.gain', 'F2.gain']")
 def together(
-    names: Sequence[str] | str,
-    *,
-    factor: tuple[float, float] | None = None,
-    shift: tuple[float, float] | None = None,
+    names: Sequence[str] | str, *, factor: tuple[float, float] | None = None, shift: tuple[float, float] | None = None
 ) -> Together:
     """Several numbers of a driveline as one unknown of `cw.calibrate`, or as one scatter of production.
 

@@ -10,13 +10,12 @@ from __future__ import annotations
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
+from clutchwork.base.arrays import Array
 from clutchwork.base.extras import need
 from clutchwork.calibration.rows import ConstraintBlock
 from clutchwork.calibration.scaled import Scaled
 
-Array = NDArray[np.float64]
 # boxes, in shares of the bounds: the smallest one, and how they grow and get smaller
 SHORTEST, WIDER, SHORTER = 1e-5, 2.0, 0.4
 # shares of what a program hopes for: less than the first is no step, below the second the box gets smaller, above the

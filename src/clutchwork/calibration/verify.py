@@ -7,10 +7,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
-from clutchwork.base.classes import dataclass
-from clutchwork.base.errors import UseError
-from clutchwork.base.plural import columns
-from clutchwork.base.quote import quote
+from clutchwork.base import UseError, columns, dataclass, quote
+from clutchwork.base.arrays import Array
 from clutchwork.calibration.evaluate import Evaluator
 from clutchwork.calibration.scatter import drawn
 from clutchwork.gradients.differentiable import differentiable
@@ -19,7 +17,6 @@ if TYPE_CHECKING:
     from clutchwork.calibration.limits import Settled
     from clutchwork.calibration.record import CalibrationRecord
 
-Array = NDArray[np.float64]
 # a limit counts as held where it is passed by less, in shares of its bound
 ALLOWED = 1e-6
 

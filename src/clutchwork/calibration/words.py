@@ -6,7 +6,7 @@ from collections.abc import Iterator
 from math import floor, isfinite, log10
 from typing import TYPE_CHECKING
 
-from clutchwork.base.plural import columns, counted
+from clutchwork.base import columns, counted
 
 if TYPE_CHECKING:
     from clutchwork.calibration.held import Held

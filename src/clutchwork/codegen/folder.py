@@ -2,34 +2,54 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
-from clutchwork.base.errors import UseError
+from clutchwork.assembly.system import System
+from clutchwork.base import UseError, quote
 from clutchwork.base.paths import fitting
 from clutchwork.base.paths import folder as made_folder
-from clutchwork.base.quote import quote
 from clutchwork.base.writing import put
 from clutchwork.codegen.model import Exported, chosen, files
-from clutchwork.codegen.parts import FILE, parts
-from clutchwork.codegen.readme import readme
 from clutchwork.codegen.sources import GENERATED, sources
 from clutchwork.declare.calls import explained
 from clutchwork.declare.options import Options
+from clutchwork.declare.schema import Role
 from clutchwork.driveline.driveline import Driveline
 from clutchwork.results.channels import channels
 from clutchwork.run.begin import new_run
 from clutchwork.run.settings import merged
-
-if TYPE_CHECKING:
-    from clutchwork.assembly.system import System
 
 TEMPLATES = Path(__file__).parent / "templates"
 # intervals of the grid when no spacing is given
 INTERVALS = 1000
 # main.c holds its rows in static memory, [bytes]
 MOST_MEMORY = 2**28
+USE = """\
+    make           # model: the whole run at once; model_steps: a step at a time
+    ./model > model.csv
+    make report    # sizes, stack, time of a step and the longest one, on the machine that runs it
+    make SMALL=1   # the least code, with the same numbers""".splitlines()
+NEEDS = """\
+No call allocates on the heap, throws, or writes anywhere but into the memory that it is given. It needs memcpy,
+memmove, memset, memcmp and strcmp, floor, fmod, sqrt and nearbyint, and nothing else of a C library.
+
+The core is compiled with what this model uses alone: `core/include/clutchwork/parts.gen.hpp`. Another export into this
+folder compiles it again only where its model uses other parts.
+
+`model.h` has every input, signal and parameter by name, with unit and bounds; `model_set_param` refuses what is out of
+bounds or fixed. `core/include/clutchwork/c_api.h` says what each call does.""".splitlines()
+FILE = "parts.gen.hpp"
+# arrays with the kinds of each role
+KINDS = {
+    Role.TORQUE: "element_kind",
+    Role.CONTACT: "contact_kind",
+    Role.LAW: "contact_law",
+    Role.FLOW: "flow_kind",
+    Role.PROCESS: "process_kind",
+}
+SMALL, SPARSE, FULL = 1, 2, 4
 
 
 @explained("cw.export_c")
@@ -89,3 +109,29 @@ def _put(path: Path, content: bytes) -> None:
     """Write a file; one that is the same keeps its date, so that it is not compiled again."""
     if not path.is_file() or path.read_bytes() != content:
         put(path, content)
+
+
+def readme(model: Exported, memory: int) -> Iterator[str]:
+    """README.md of an exported model; memory of a run [bytes]."""
+    yield from (f"# {model.system.name}", "", "Made by clutchwork: a driveline as C, with the core that runs it.", "")
+    yield from USE
+    yield from ("", "| what | how large |", "|---|---|")
+    yield f"| system, constant | {len(model.data)} bytes |"
+    yield f"| memory of a run | {memory} bytes |"
+    yield f"| numbers in a row | {len(model.columns)} |"
+    yield f"| inputs, parameters | {len(model.system.inputs)}, {len(model.settable)} |"
+    yield from ("", *NEEDS)
+
+
+def parts(system: System, whole: bool) -> Iterator[str]:
+    """The header that says which kinds and forms a model needs, which registry.gen.hpp includes; whole: all of them."""
+    yield from ("// What the exported model needs of the core; a System that needs more is refused.", "#pragma once")
+    yield from ("// one run at a time", "#define CLUTCHWORK_ALONE")
+    if whole:
+        return
+    for role, array in KINDS.items():
+        kinds = set(system.arrays[array].tolist())
+        # a switch has at least one case
+        mask = sum(1 << kind for kind in kinds) or 1
+        yield f"#define CLUTCHWORK_{role.value.upper()} {mask:#x}ull"
+    yield f"#define CLUTCHWORK_FORMS {FULL if system.full[0] else SMALL + SPARSE}"

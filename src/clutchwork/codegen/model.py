@@ -11,9 +11,9 @@ import numpy as np
 from clutchwork.assembly.provenance import SystemParameter
 from clutchwork.assembly.system import System
 from clutchwork.assembly.wiring import Wiring, wiring
+from clutchwork.base import dataclass
 from clutchwork.base.bounds import in_words
 from clutchwork.base.c_literal import literal
-from clutchwork.base.classes import dataclass
 from clutchwork.codegen.text import comment, enumeration, identifiers, string
 from clutchwork.declare.layout import CAUSES, EVENT, MODES, STATUS
 from clutchwork.declare.options import OPTIONS, Options

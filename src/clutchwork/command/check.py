@@ -6,7 +6,7 @@ import argparse
 from pathlib import Path
 from typing import Any
 
-from clutchwork.base.plural import columns
+from clutchwork.base import columns
 from clutchwork.base.shell import DONE, add_command, add_json, add_model, tell, tell_json
 from clutchwork.command.models import add_set, add_trust, system_of
 

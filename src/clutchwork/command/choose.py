@@ -6,7 +6,7 @@ from collections.abc import Iterable, Mapping, Sequence
 from typing import TYPE_CHECKING
 
 from clutchwork.assembly.wiring import wiring
-from clutchwork.base.errors import UseError, near
+from clutchwork.base import UseError, near
 from clutchwork.results.ratios import input_and_output
 from clutchwork.results.selection import chosen
 from clutchwork.results.units import among

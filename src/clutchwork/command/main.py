@@ -86,10 +86,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
 def parser() -> Parser:
     """What the command line understands."""
     top = Parser(
-        prog="clutchwork",
-        description=ABOUT,
-        epilog=f"{example_text(EXAMPLES)}\n\n{code_text()}",
-        formatter_class=Help,
+        prog="clutchwork", description=ABOUT, epilog=f"{example_text(EXAMPLES)}\n\n{code_text()}", formatter_class=Help
     )
     top.add_argument("--version", action=_Version, nargs=0, help="show program's version number and exit")
     top.set_defaults(command=None, parser=top, top=top)

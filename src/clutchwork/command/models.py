@@ -8,7 +8,7 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from clutchwork.base.errors import ModelWarning
+from clutchwork.base import ModelWarning
 
 if TYPE_CHECKING:
     from clutchwork.assembly.system import System

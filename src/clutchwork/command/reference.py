@@ -6,20 +6,15 @@ import argparse
 from collections.abc import Iterator, Mapping
 from typing import Any
 
+from clutchwork.base import columns, counted, listed
 from clutchwork.base.errors import nearest
-from clutchwork.base.plural import columns, counted
-from clutchwork.base.quote import listed
 from clutchwork.base.shell import DONE, Example, add_command, add_json, paragraphs, tell, tell_json, width
 from clutchwork.declare.docs import FieldDescription, described, summary, words
 from clutchwork.declare.purposes import ELEMENT_ROLES, groups
 from clutchwork.declare.schema import Role, specs
 from clutchwork.declare.unit_table import UnitRow, unit_table
 
-ROLES: dict[str, tuple[Role, ...]] = {
-    "elements": ELEMENT_ROLES,
-    "laws": (Role.LAW,),
-    "signals": (Role.SIGNAL,),
-}
+ROLES: dict[str, tuple[Role, ...]] = {"elements": ELEMENT_ROLES, "laws": (Role.LAW,), "signals": (Role.SIGNAL,)}
 PURPOSES = {
     "elements": "list all elements, or all fields of one",
     "laws": "list all friction laws, or all fields of one",

@@ -8,7 +8,7 @@ from dataclasses import asdict
 from functools import reduce
 from typing import TYPE_CHECKING, Any
 
-from clutchwork.base.plural import columns, counted
+from clutchwork.base import columns, counted
 from clutchwork.base.quote import LONGEST, shortened
 from clutchwork.base.shell import paragraphs, width
 from clutchwork.hints.registry import of_model

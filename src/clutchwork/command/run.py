@@ -10,7 +10,7 @@ from importlib.util import find_spec
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, NamedTuple
 
-from clutchwork.base.errors import near
+from clutchwork.base import near
 from clutchwork.base.paths import fitting
 from clutchwork.base.shell import (
     DONE,

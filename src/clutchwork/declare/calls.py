@@ -9,10 +9,8 @@ from dataclasses import is_dataclass
 from types import FunctionType
 from typing import Any, TypeVar
 
-from clutchwork.base.classes import dataclass
-from clutchwork.base.errors import UseError, near, nearest
-from clutchwork.base.plural import counted
-from clutchwork.base.quote import listed, quote
+from clutchwork.base import UseError, counted, dataclass, listed, near, quote
+from clutchwork.base.errors import nearest
 from clutchwork.declare.expected_value import wanted
 from clutchwork.declare.schema import specs
 

@@ -6,7 +6,7 @@ no others of these.
 
 from __future__ import annotations
 
-from clutchwork.base.classes import dataclass
+from clutchwork.base import dataclass
 
 
 @dataclass(frozen=True)

@@ -7,9 +7,8 @@ from enum import Enum, Flag, auto
 from functools import cached_property
 from typing import TYPE_CHECKING, Any, ClassVar, NamedTuple, Protocol, TypeAlias, cast
 
-from clutchwork.base.classes import PLAIN, dataclass
-from clutchwork.base.errors import UnknownName, near
-from clutchwork.base.quote import listed, quote
+from clutchwork.base import UnknownName, dataclass, listed, near, quote
+from clutchwork.base.classes import PLAIN
 from clutchwork.declare import to_si
 
 if TYPE_CHECKING:

@@ -7,12 +7,11 @@ The fields of `Options` are the table of all options. What checks them, the comm
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import fields, replace
+from dataclasses import fields
 from math import inf
 from typing import TYPE_CHECKING, Any, Literal, Unpack, get_args
 
-from clutchwork.base.classes import dataclass
-from clutchwork.base.errors import OptionError, UseError, advised, near
+from clutchwork.base import OptionError, UseError, advised, dataclass, near
 from clutchwork.declare.calls import explain, explained_methods
 from clutchwork.declare.docs import document
 from clutchwork.declare.layout import METHODS
@@ -85,12 +84,7 @@ class Options:
         core=True,
     )
     max_step: float | None = setting(
-        "s",
-        "longest step of the solver (by default there is no limit)",
-        default=None,
-        above=0.0,
-        core=True,
-        unset=inf,
+        "s", "longest step of the solver (by default there is no limit)", default=None, above=0.0, core=True, unset=inf
     )
     max_steps: int = setting(
         "1", "number of steps after which a run stops", default=10_000_000, at_least=1, at_most=MOST_COUNTED, core=True
@@ -127,14 +121,11 @@ class Options:
 
     def __post_init__(self) -> None:
         """Put values with units into SI; refuse those that make no sense, with what to write instead, all at once."""
-        for name, row in OPTIONS.items():
-            if (value := getattr(self, name)) is not row.default:
-                vars(self)[name] = row.in_si(value)
-        found = [
-            fault
-            for name, row in OPTIONS.items()
-            if (value := getattr(self, name)) is not row.default and (fault := _told(name, row, value))
-        ]
+        values = vars(self)
+        given = [(name, row) for name, row in OPTIONS.items() if values[name] is not row.default]
+        for name, row in given:
+            values[name] = row.in_si(values[name])
+        found = [fault for name, row in given if (fault := _told(name, row, values[name]))]
         if self.dt is not None and self.times is not None:
             found.append(f"dt and times are both given: {ONE_GRID}")
         if found:
@@ -143,7 +134,7 @@ class Options:
     def changed(self, changes: Mapping[str, Any]) -> Options:
         """These options with some replaced; an unknown name is a UseError, a TypeError, with a near match."""
         known(changes)
-        return replace(self, **changes) if changes else self
+        return Options(**{**vars(self), **changes}) if changes else self
 
     def core_options(self) -> dict[str, float]:
         """The options that the compiled core knows, as its numbers."""

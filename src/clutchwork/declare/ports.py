@@ -2,17 +2,15 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
+from fractions import Fraction
 from functools import cache
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
-from clutchwork.base.classes import dataclass
+from clutchwork.base import dataclass
 from clutchwork.declare.node import HOUSING, Component, Domain, Node, ThermalNode
 from clutchwork.declare.rational import MINUS, ONE, exact
 from clutchwork.declare.schema import Way, specs
-
-if TYPE_CHECKING:
-    from collections.abc import Mapping
-    from fractions import Fraction
 
 
 def ports(component: Component) -> dict[str, Node]:

@@ -8,8 +8,8 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import Any
 
-from clutchwork.base.errors import ClutchworkError, advised, near
-from clutchwork.base.quote import quote, shortened
+from clutchwork.base import ClutchworkError, advised, near, quote
+from clutchwork.base.quote import shortened
 from clutchwork.declare import pints, units
 from clutchwork.declare.unit_table import example_of
 from clutchwork.declare.unit_table import unit_table as unit_table

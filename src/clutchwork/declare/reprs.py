@@ -6,7 +6,7 @@ from dataclasses import MISSING, fields
 from numbers import Real
 from typing import Any
 
-from clutchwork.base.quote import quote
+from clutchwork.base import quote
 from clutchwork.declare.schema import specs
 from clutchwork.declare.to_si import settled
 

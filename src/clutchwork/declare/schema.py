@@ -7,18 +7,16 @@ The C++ header of the same stem holds the equations; `tools/gen_registry.py` pai
 
 from __future__ import annotations
 
+from collections.abc import Callable, Iterable
 from dataclasses import MISSING, Field, field, fields
 from functools import cache
 from math import inf, nextafter
-from typing import TYPE_CHECKING, Any, TypeAlias, TypeVar, dataclass_transform
+from typing import Any, TypeAlias, TypeVar, dataclass_transform
 
 from clutchwork.base.classes import PLAIN, dataclass
 from clutchwork.declare.hooks import hook_problems
 from clutchwork.declare.registry import REGISTRY as REGISTRY
 from clutchwork.declare.registry import Role as Role
-
-if TYPE_CHECKING:
-    from collections.abc import Callable, Iterable
 
 
 @dataclass(frozen=True)

@@ -7,9 +7,7 @@ from dataclasses import field
 from numbers import Real
 from typing import Any, NamedTuple
 
-from clutchwork.base.classes import dataclass
-from clutchwork.base.errors import near
-from clutchwork.base.quote import quote
+from clutchwork.base import dataclass, near, quote
 from clutchwork.declare.quantity import QuantityError, has_unit, in_si
 from clutchwork.declare.schema import Spec
 from clutchwork.declare.to_si import field_in_si

@@ -7,25 +7,27 @@ from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from clutchwork.base.errors import UseError, near
+from clutchwork.base import UseError, listed, near, quote
 from clutchwork.base.paths import path_fault
-from clutchwork.base.quote import listed, quote
 from clutchwork.declare.calls import explained
 from clutchwork.diagrams.axes import paint as parallel
 from clutchwork.diagrams.axes.layout import axes, fits
 from clutchwork.diagrams.kinds import KINDS
 from clutchwork.diagrams.lever import paint as lever
 from clutchwork.diagrams.lever.layout import layout as lever_layout
-from clutchwork.diagrams.machines import with_machines
 from clutchwork.diagrams.picture import Diagram
 from clutchwork.diagrams.speed import chart, plan
 from clutchwork.diagrams.stick import paint as stick
 from clutchwork.diagrams.stick.layout import layout as stick_layout
+from clutchwork.diagrams.stick.symbols import MACHINE
+from clutchwork.gearbox.definition import ShiftElement
+from clutchwork.gearbox.gear_set import HOUSING
 from clutchwork.gearbox.gearbox import Gearbox
 from clutchwork.gearbox.operating import OperatingPoint
 
 # kinds that show each set as a lever
 LEVERS = ("lever", "speeds")
+
 
 if TYPE_CHECKING:
     from clutchwork.diagrams.marks import Mark
@@ -124,3 +126,9 @@ def _marks(box: Gearbox, kind: str, now: GearState | OperatingPoint | None, merg
     # closed elements that are no row of the table are shown beside its gears
     states += [gear] if gear is not None and all(gear.closed != one.closed for one in states) else []
     return plan.painted(box, states, gear) if kind == "speeds" else chart.painted(box, states, gear)
+
+
+def with_machines(box: Gearbox) -> Gearbox:
+    """A gearbox to draw: a machine stands between the housing, which holds its stator, and its member."""
+    machines = (ShiftElement(name, MACHINE, HOUSING, member) for name, member in box.machines.items())
+    return replace(box, elements=(*box.elements, *machines), machines={})

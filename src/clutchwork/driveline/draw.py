@@ -3,18 +3,15 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
-from clutchwork.base.errors import UseError
-from clutchwork.base.quote import quote
+from clutchwork.base import UseError, quote
 from clutchwork.declare.calls import explained
+from clutchwork.declare.node import Number
 from clutchwork.driveline.driveline import Driveline
 from clutchwork.results.recorded import Recorded
 from clutchwork.schematic.draw import drawn
-
-if TYPE_CHECKING:
-    from clutchwork.declare.node import Number
-    from clutchwork.schematic.picture import Schematic
+from clutchwork.schematic.picture import Schematic
 
 
 @explained("cw.draw")

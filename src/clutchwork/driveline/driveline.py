@@ -6,10 +6,9 @@ from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, TypeVar, Unpack
 
-from clutchwork.base.errors import ModelError, Problem, UseError, warn
+from clutchwork.base import ModelError, Problem, UseError, counted, quote
+from clutchwork.base.errors import warn
 from clutchwork.base.paths import path_of
-from clutchwork.base.plural import counted
-from clutchwork.base.quote import quote
 from clutchwork.declare.calls import explain, explained, explained_methods
 from clutchwork.declare.node import HOUSING, Component, Domain, Element, Node, Signal, ThermalNode
 from clutchwork.declare.wording import words_of_files

@@ -8,8 +8,8 @@ from numbers import Real
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from numpy.typing import NDArray
 
+from clutchwork.base.arrays import Array
 from clutchwork.declare.core import core, number
 from clutchwork.declare.schema import specs
 from clutchwork.driveline.driveline import Driveline
@@ -29,7 +29,6 @@ if TYPE_CHECKING:
     from clutchwork.declare.schema import Spec
     from clutchwork.plot.canvas import Picture
 
-Array = NDArray[np.float64]
 
 SLIP = 10.0  # rad/s, where the law has no slip of its own
 BEYOND, BEHIND = 5.0, 1.15  # how far over the slip of a formula, and over the last one of a table

@@ -35,9 +35,7 @@ STATES = (
 
 
 @component(
-    Role.TORQUE,
-    states=STATES,
-    hooks=("edges", "edge", "margin", "cross", "turns", "settle", "pace", "count", "fits"),
+    Role.TORQUE, states=STATES, hooks=("edges", "edge", "margin", "cross", "turns", "settle", "pace", "count", "fits")
 )
 class EngineTorque(Component):
     """Torque over speed and throttle with idle control, limiter, boost and ripple, minus what it holds at rest.

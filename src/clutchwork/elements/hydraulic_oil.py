@@ -13,8 +13,7 @@ DENSE, USUAL, COLDEST = 288.15, 353.15, 200.0
 
 
 @component(
-    Role.PROCESS,
-    states=(State("viscosity", "m2/s", "kinematic viscosity"), State("density", "kg/m3", "density")),
+    Role.PROCESS, states=(State("viscosity", "m2/s", "kinematic viscosity"), State("density", "kg/m3", "density"))
 )
 class HydraulicOil(Component):
     """Oil: its kinematic viscosity by the law of Walther and its density, where valves and pumps find them.

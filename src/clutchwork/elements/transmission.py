@@ -8,9 +8,8 @@ from functools import cached_property
 from numbers import Real
 from typing import Any, ClassVar
 
-from clutchwork.base.errors import near
+from clutchwork.base import listed, near, quote
 from clutchwork.base.frozen import frozen
-from clutchwork.base.quote import listed, quote
 from clutchwork.declare import (
     HOUSING,
     Component,

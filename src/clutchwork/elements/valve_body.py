@@ -5,18 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping
 from typing import Any
 
-from clutchwork.declare import (
-    Component,
-    Found,
-    Node,
-    Role,
-    SignalLike,
-    component,
-    named,
-    param,
-    port,
-    signal,
-)
+from clutchwork.declare import Component, Found, Node, Role, SignalLike, component, named, param, port, signal
 from clutchwork.elements.bases.oil import DENSITY, VISCOSITY
 from clutchwork.elements.clutch_actuator import ClutchActuator
 from clutchwork.elements.oil_volume import OilVolume

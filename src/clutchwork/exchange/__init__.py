@@ -6,9 +6,8 @@ from collections.abc import Callable, Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from clutchwork.base.errors import ClutchworkError, near
+from clutchwork.base import ClutchworkError, near, quote
 from clutchwork.base.paths import fitting
-from clutchwork.base.quote import quote
 from clutchwork.base.writing import replaced
 from clutchwork.exchange import content, csv_table, mat, mdf, netcdf, parquet
 

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
-from clutchwork.base.classes import dataclass
+from clutchwork.base import dataclass
 from clutchwork.base.extras import program
 from clutchwork.declare.options import OPTIONS
 from clutchwork.model.settings import plain_settings
@@ -106,11 +106,7 @@ def settings_of(run: Recorded) -> dict[str, Any]:
 
 
 def content(
-    run: Recorded,
-    names: Any = None,
-    dt: float | None = None,
-    times: Any = None,
-    units: Mapping[str, str] | None = None,
+    run: Recorded, names: Any = None, dt: float | None = None, times: Any = None, units: Mapping[str, str] | None = None
 ) -> Content:
     """Selects signals, resamples, converts units."""
     known = run.channels

@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 
-from clutchwork.base.errors import ClutchworkError
+from clutchwork.base import ClutchworkError
 from clutchwork.base.extras import need
 from clutchwork.exchange.content import Content, ExportedSignal
 from clutchwork.exchange.safe_names import matlab

@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from clutchwork.base.errors import UseError
+from clutchwork.base import UseError
 from clutchwork.base.extras import need
 from clutchwork.exchange.content import Content, ExportedSignal
 

@@ -6,8 +6,7 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 from typing import Any
 
-from clutchwork.base.errors import UseError
-from clutchwork.base.quote import quote
+from clutchwork.base import UseError, quote
 from clutchwork.executors.executor import Executor
 from clutchwork.executors.on_dask import OnDask
 from clutchwork.executors.on_ray import OnRay

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Generator, Iterable
 from typing import Any, Protocol, TypeAlias
 
-from clutchwork.base.errors import ClutchworkError
+from clutchwork.base import ClutchworkError
 
 # raises where the work is to end early
 Alive: TypeAlias = Callable[[], None]

@@ -5,7 +5,7 @@ from __future__ import annotations
 import warnings
 from typing import Any
 
-from clutchwork.base.errors import ModelWarning
+from clutchwork.base import ModelWarning
 from clutchwork.executors.executor import Task, on_and_on
 
 

@@ -8,7 +8,7 @@ from itertools import islice
 from threading import Event
 from typing import Any
 
-from clutchwork.base.classes import dataclass
+from clutchwork.base import dataclass
 from clutchwork.executors.executor import AHEAD, Stopped, Task
 
 

@@ -7,8 +7,7 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
-from clutchwork.base.errors import FMUError, Problem, UseError, near
-from clutchwork.base.quote import quote
+from clutchwork.base import FMUError, Problem, UseError, near, quote
 from clutchwork.fmu_import.fmu import FMU
 
 # what says where it is, then what it is told

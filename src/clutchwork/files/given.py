@@ -6,8 +6,7 @@ from collections.abc import Sequence
 from dataclasses import fields
 from typing import Any
 
-from clutchwork.base.errors import ModelError, Problem
-from clutchwork.base.quote import quote
+from clutchwork.base import ModelError, Problem, quote
 from clutchwork.base.toml_text import parsed
 from clutchwork.declare.node import Node, ThermalNode
 from clutchwork.declare.schema import Spec, specs

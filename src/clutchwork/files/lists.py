@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import Any
 
-from clutchwork.base.quote import quote
+from clutchwork.base import quote
 from clutchwork.declare.quantity import PLAIN, QuantityError, in_si, scale_to_si
 from clutchwork.declare.schema import Spec
 from clutchwork.declare.to_si import TargetUnit, numbers_in_si, points_in_si

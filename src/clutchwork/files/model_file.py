@@ -29,8 +29,9 @@ from __future__ import annotations
 
 import json
 import re
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
+from dataclasses import replace
 from math import inf
 from pathlib import Path
 from typing import Any
@@ -43,7 +44,6 @@ from clutchwork.base.toml_text import parsed
 from clutchwork.base.writing import put
 from clutchwork.declare.node import Domain
 from clutchwork.declare.wording import words_of_files
-from clutchwork.files.lines import LineNumbers
 from clutchwork.files.reader import FORMAT, ModelReader
 from clutchwork.files.writer import Writer, toml
 from clutchwork.model.findings import findings
@@ -57,6 +57,9 @@ MOST_BYTES = 10_000_000
 ENDINGS = (".toml", ".json")
 # not suggested when a model file is missing
 NO_MODELS = ("pyproject.toml", "package.json", "package-lock.json", "tsconfig.json", "Cargo.toml")
+_HEAD = re.compile(r'\s*(\[\[?)\s*"?([A-Za-z_]+)"?\s*((?:\.\s*(?:"[^"]*"|[\w-]+)\s*)*)\]\]?\s*(#.*)?')
+_KEY = re.compile(r'\s*"?([A-Za-z_][\w-]*)"?\s*[=.]')
+_PATH = re.compile(r'(\w+)(?: number (\d+)| "(.*?)"(?= \(| and |$))?', re.DOTALL)
 
 
 def load(path: str | Path, *, trust: bool = False) -> Model:
@@ -191,3 +194,56 @@ def _fix(words: str) -> str:
     """The place in a file that a parser complains of, to be fixed."""
     found = re.search(r"line (\d+),? column (\d+)", words)
     return f"fix line {found[1]}, column {found[2]}" if found else "fix the syntax"
+
+
+class LineNumbers:
+    """Where the tables of a file stand; nothing is known of JSON and of tables in one line."""
+
+    def __init__(self, text: str, suffix: str) -> None:
+        self._heads: dict[tuple[str, int], int] = {}
+        self._keys: dict[tuple[str, int, str], int] = {}
+        self._unread = text if suffix == ".toml" else ""
+
+    def _read(self, text: str) -> None:
+        counts: dict[str, int] = {}
+        inside, table, below = False, ("file", 0), ""
+        for number, line in enumerate(text.split("\n"), 1):
+            head = None if inside else _HEAD.fullmatch(line)
+            if head and head[3]:
+                # a table inside of the last one: [element.shift.A]
+                below = re.sub(r"[\s\"]", "", head[3])[1:] + "."
+                table = (head[2], counts.get(head[2], 0))
+                self._keys.setdefault((*table, below[:-1]), number)
+            elif head:
+                below = ""
+                counts[head[2]] = counts.get(head[2], 0) + 1
+                table = (head[2], counts[head[2]] if head[1] == "[[" else 0)
+                self._heads.setdefault(table, number)
+            elif not inside and (key := _KEY.match(line)):
+                self._keys.setdefault((*table, below + key[1]), number)
+            # a text over several lines may look like anything
+            if (line.count('"""') + line.count("'''")) % 2:
+                inside = not inside
+
+    def placed(self, problem: Problem, data: Any) -> Problem:
+        """A problem with its line, where that is known; most files have none, so they are read for the first one."""
+        unread, self._unread = self._unread, ""
+        self._read(unread)
+        match = _PATH.match(problem.path)
+        if match is None or not self._keys or not isinstance(data, Mapping):
+            return problem
+        kind, number = match[1], int(match[2] or 0)
+        if match[3] is not None:
+            entries = data.get(kind)
+            listed = entries if isinstance(entries, list) else []
+            names = [entry.get("name") if isinstance(entry, Mapping) else None for entry in listed]
+            number = names.index(match[3]) + 1 if match[3] in names else -1
+        words = re.split(r"[., ]", problem.quantity)
+        key = words[0]
+        ways = [".".join(words[:cut]) for cut in range(len(words), 0, -1)]
+        line = next((self._keys[kind, number, way] for way in ways if (kind, number, way) in self._keys), 0)
+        line = line or self._heads.get((kind, number), 0)
+        if kind == "file":
+            # a table with an unknown head
+            line = line or self._heads.get((key, 1)) or self._heads.get((key, 0), 0)
+        return replace(problem, line=line)

@@ -6,8 +6,7 @@ from collections.abc import Mapping
 from dataclasses import MISSING
 from typing import Any
 
-from clutchwork.base.errors import near
-from clutchwork.base.quote import listed, quote
+from clutchwork.base import listed, near, quote
 from clutchwork.declare.node import Component, Domain, Node, ThermalNode
 from clutchwork.declare.options import SIMULATION
 from clutchwork.declare.wording import element_path

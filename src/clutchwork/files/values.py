@@ -8,8 +8,7 @@ from functools import cache
 from pathlib import Path
 from typing import Any, TypeVar
 
-from clutchwork.base.errors import FMUError, Problem, near
-from clutchwork.base.quote import listed, quote
+from clutchwork.base import FMUError, Problem, listed, near, quote
 from clutchwork.declare.node import HOUSING, Domain, Node, ThermalNode
 from clutchwork.declare.quantity import PLAIN, QuantityError, in_si, scale_to_si
 from clutchwork.declare.schema import REGISTRY, Role, Spec, inputs, specs
@@ -166,13 +165,7 @@ class ValueReader:
         others = (*spec.units, *at.units)
         return self._converted(
             lambda: in_si(
-                value,
-                at.unit,
-                others,
-                scale.factor,
-                whole=spec.whole,
-                difference=spec.difference,
-                zero=scale.zero,
+                value, at.unit, others, scale.factor, whole=spec.whole, difference=spec.difference, zero=scale.zero
             ),
             at,
         )

@@ -11,7 +11,7 @@ from numbers import Real
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from clutchwork.base.errors import Problem
+from clutchwork.base import Problem
 from clutchwork.declare.node import DIRECT, is_reference
 from clutchwork.declare.schema import Spec, specs
 from clutchwork.declare.wording import path_of
@@ -116,7 +116,7 @@ class Writer:
         if hasattr(value, "__dataclass_fields__"):
             fields_ = self._fields(value, at.path)
             if isinstance(value, Column):
-                fields_["path"] = self._path(value)
+                fields_["path"] = self._relative(Path(value.folder, value.path))
             return {"type": value.kind, **fields_}
         return value if isinstance(value, str | bool | int) else float(value)
 
@@ -128,9 +128,6 @@ class Writer:
                 number += 1
             self.fmus[fmu] = name
         return self.fmus[fmu]
-
-    def _path(self, column: Column) -> str:
-        return self._relative(Path(column.folder, column.path))
 
     def _relative(self, full: Path) -> str:
         if self.folder is None or full.is_absolute():

@@ -15,7 +15,7 @@ from __future__ import annotations
 from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
-from clutchwork.base.errors import near
+from clutchwork.base import near
 
 if TYPE_CHECKING:
     from clutchwork.fit.estimates import Parameter as Parameter

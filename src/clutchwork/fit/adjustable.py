@@ -3,19 +3,16 @@
 from __future__ import annotations
 
 from dataclasses import replace
-from typing import TYPE_CHECKING
 
 import numpy as np
 
+from clutchwork.declare.node import Law
 from clutchwork.declare.schema import Spec, specs
 from clutchwork.fit.ordinates import ABOVE, STATIC, ordinates, rivals, tables, with_ordinates
 from clutchwork.fit.sliding import coefficients
 from clutchwork.laws.bases.tables import Tabulated
 from clutchwork.model.fields import CHECKS
 from clutchwork.model.numbers import At
-
-if TYPE_CHECKING:
-    from clutchwork.declare.node import Law
 
 _TINY = 1e-9
 

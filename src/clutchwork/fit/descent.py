@@ -7,9 +7,9 @@ from functools import cached_property
 from typing import ClassVar
 
 import numpy as np
-from numpy.typing import NDArray
 
-from clutchwork.base.errors import ModelError
+from clutchwork.base import ModelError
+from clutchwork.base.arrays import Array
 from clutchwork.fit.driven import Driven
 from clutchwork.fit.engine import STAY, LeastSquares, Signals, Solution
 from clutchwork.fit.failure import FitError, scipy
@@ -18,8 +18,6 @@ from clutchwork.fit.numbers import Numbers
 from clutchwork.gradients.differentiable import Differentiable, made
 from clutchwork.results.gradient import NoGradient
 from clutchwork.sweeps.outputs import AtTimes
-
-Array = NDArray[np.float64]
 
 # relative step of difference quotients, far above the error of the runs
 STEP = 1e-4

@@ -6,11 +6,8 @@ from collections.abc import Iterator, Mapping, Sequence
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from numpy.typing import NDArray
 
-from clutchwork.base.classes import dataclass
-from clutchwork.base.errors import ModelError, Problem, UseError
-from clutchwork.base.quote import listed
+from clutchwork.base import ModelError, Problem, UseError, dataclass, listed
 from clutchwork.declare.node import Signal
 from clutchwork.declare.options import Options
 from clutchwork.fit.failure import FitError
@@ -26,7 +23,6 @@ if TYPE_CHECKING:
     from clutchwork.results.channels import Channel
     from clutchwork.run.trajectory import Trajectory
 
-Array = NDArray[np.float64]
 
 # far below what a sensor resolves
 RTOL, ATOL = 1e-9, 1e-11

@@ -8,14 +8,14 @@ from typing import TYPE_CHECKING, Any, ClassVar
 import numpy as np
 from numpy.typing import NDArray
 
-from clutchwork.base.classes import dataclass
+from clutchwork.base import dataclass
+from clutchwork.base.arrays import Array
 from clutchwork.fit.failure import scipy
 
 if TYPE_CHECKING:
     from clutchwork.fit.losses import Penalty
     from clutchwork.fit.unknown import Unknown
 
-Array = NDArray[np.float64]
 # places among residuals, those of each signal, in order of time in each record
 Signals = dict[str, list[NDArray[np.intp]]]
 

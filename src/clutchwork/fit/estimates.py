@@ -6,14 +6,8 @@ from collections.abc import Sequence
 from dataclasses import field
 from typing import Any, Self
 
-import numpy as np
-from numpy.typing import NDArray
-
-from clutchwork.base.classes import dataclass
-from clutchwork.base.errors import ClutchworkError, near
-from clutchwork.base.plural import columns
-
-Array = NDArray[np.float64]
+from clutchwork.base import ClutchworkError, columns, dataclass, near
+from clutchwork.base.arrays import Array
 
 
 @dataclass(frozen=True)
@@ -36,11 +30,7 @@ class Parameter:
         return not self.reason
 
     def __str__(self) -> str:
-        open_ends = [
-            self.reason,
-            self.direction and f"the samples hardly depend on {self.direction}",
-            self.experiment,
-        ]
+        open_ends = [self.reason, self.direction and f"the samples hardly depend on {self.direction}", self.experiment]
         return f"{self.name} is not determined: " + "; ".join(part for part in open_ends if part)
 
 

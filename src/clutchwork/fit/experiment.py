@@ -7,9 +7,9 @@ from math import pi
 from typing import TYPE_CHECKING
 
 import numpy as np
-from numpy.typing import NDArray
 
-from clutchwork.base.classes import dataclass
+from clutchwork.base import dataclass
+from clutchwork.base.arrays import Array
 from clutchwork.fit.information import Information, information
 from clutchwork.fit.measurement import Measurement
 from clutchwork.fit.model import model_of
@@ -20,7 +20,6 @@ from clutchwork.fit.sliding import coefficients
 if TYPE_CHECKING:
     from clutchwork.fit.unknowns import Unknowns
 
-Array = NDArray[np.float64]
 
 SAMPLES = 60
 # an experiment that leaves more than this relative uncertainty determines nothing

@@ -8,9 +8,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from clutchwork.base.errors import ClutchworkError, advised
+from clutchwork.base import ClutchworkError, advised, counted
 from clutchwork.base.extras import need
-from clutchwork.base.plural import counted
 
 
 class FitError(ClutchworkError, ValueError):

@@ -7,7 +7,7 @@ from dataclasses import field
 import numpy as np
 from numpy.typing import NDArray
 
-from clutchwork.base.classes import dataclass
+from clutchwork.base import dataclass
 from clutchwork.declare.node import Law
 from clutchwork.fit.estimates import ParameterEstimates
 from clutchwork.fit.measurement import Measurement

@@ -7,9 +7,8 @@ from math import sqrt
 import numpy as np
 from numpy.typing import NDArray
 
-from clutchwork.base.classes import dataclass
-
-Array = NDArray[np.float64]
+from clutchwork.base import dataclass
+from clutchwork.base.arrays import Array
 
 # effect on the torque below which a parameter counts as without any, relative to the torque: of a formula, of a run
 NO_EFFECT = {True: 1e-9, False: 1e-6}

@@ -9,9 +9,9 @@ from types import MappingProxyType
 from typing import TYPE_CHECKING
 
 import numpy as np
-from numpy.typing import NDArray
 
-from clutchwork.base.classes import dataclass
+from clutchwork.base import dataclass
+from clutchwork.base.arrays import Array
 from clutchwork.fit import reasons
 from clutchwork.fit.estimates import Parameter
 from clutchwork.fit.failure import scipy
@@ -22,7 +22,6 @@ if TYPE_CHECKING:
     from clutchwork.fit.search import Residuals
     from clutchwork.fit.unknown import Unknown
 
-Array = NDArray[np.float64]
 
 FEWEST_NEIGHBOURS = 10
 # half widths that are so many times what a code is measured in say nothing

@@ -3,14 +3,18 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import replace
+from numbers import Real
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
-from clutchwork.base.plural import counted
+from clutchwork.base import counted
+from clutchwork.base.arrays import Array
+from clutchwork.declare.node import Law
 from clutchwork.declare.node import Law as LawBase
+from clutchwork.declare.schema import inputs
 from clutchwork.fit import table
 from clutchwork.fit.adjustable import faults
 from clutchwork.fit.engine import Solution
@@ -28,14 +32,11 @@ from clutchwork.fit.readings import likely, of_units
 from clutchwork.fit.result import FitResult
 from clutchwork.fit.search import TORQUE, Residuals
 from clutchwork.fit.sliding import Sliding, noisy
-from clutchwork.fit.temperature import at_temperature
 from clutchwork.fit.unknown import Bounds
 from clutchwork.fit.unknowns import Unknowns
 
-if TYPE_CHECKING:
-    from clutchwork.declare.node import Law
-
-Array = NDArray[np.float64]
+TEMPERATURE = "temperature"
+_REMEDY = "give the measured temperature [K], a number or a row"
 
 
 def fit_law(
@@ -225,3 +226,26 @@ def _remarks(search: Residuals, residuals: Array, parameters: Sequence[Parameter
             f"{counted(off, 'samples')} more than twice as far off"
         )
     return made
+
+
+def at_temperature(samples: Measurement, law: Law) -> Measurement:
+    """Samples with the temperature that the law needs: the measured one, else the number that the law holds."""
+    kind = type(law).__name__
+    needed = [name for names, _ in inputs(type(law)) for name in names[:1] if law.reads(name)]
+    for name in needed:
+        if name != TEMPERATURE:
+            raise FitError(
+                name, f"drives {kind}, and a fit supports no signal other than the temperature", "fit another law"
+            )
+    if samples.temperature is not None:
+        if not needed:
+            raise FitError(TEMPERATURE, f"is given, and {kind} does not depend on it", "remove it")
+        return samples
+    if not needed:
+        return samples
+    held = getattr(law, TEMPERATURE)
+    if held is None:
+        raise FitError(TEMPERATURE, f"is missing, and {kind} depends on it", _REMEDY)
+    if not isinstance(held, Real):
+        raise FitError(TEMPERATURE, f"of the law is {held!r}, and a fit runs no signals", _REMEDY)
+    return replace(samples, temperature=np.full(len(samples.time), float(held)))

@@ -6,14 +6,10 @@ from collections.abc import Callable
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
-from clutchwork.base.classes import dataclass
-from clutchwork.base.errors import near
-from clutchwork.base.quote import quote
+from clutchwork.base import dataclass, near, quote
+from clutchwork.base.arrays import Array
 from clutchwork.fit.failure import FitError
-
-Array = NDArray[np.float64]
 
 # deviations of the noise within which residuals count in full
 WIDTH = 1.345

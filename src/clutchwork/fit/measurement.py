@@ -5,12 +5,10 @@ from __future__ import annotations
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
-from clutchwork.base.classes import dataclass
+from clutchwork.base import dataclass
+from clutchwork.base.arrays import Array
 from clutchwork.fit.failure import FitError, numbers_of, rising
-
-Array = NDArray[np.float64]
 
 FEWEST = 5
 

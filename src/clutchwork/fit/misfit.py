@@ -3,9 +3,8 @@
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import NDArray
 
-Array = NDArray[np.float64]
+from clutchwork.base.arrays import Array
 
 # a pattern is one that noise has in one of so many fits: the deviations of a normal distribution beyond which that is
 CHANCE, BEYOND = 1e-3, 3.09

@@ -10,8 +10,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
-from clutchwork.base.classes import dataclass
-from clutchwork.base.errors import UseError, near
+from clutchwork.base import UseError, dataclass, near
+from clutchwork.base.arrays import Array
 from clutchwork.fit.failure import FitError, refuse
 from clutchwork.fit.unknown import Bounds, Pair, Unknown
 from clutchwork.gradients.parameters import ENTRY, Tunable, parameters
@@ -21,7 +21,6 @@ if TYPE_CHECKING:
     from clutchwork.assembly.system import System
     from clutchwork.fit.driven import Driven
 
-Array = NDArray[np.float64]
 
 # how far the search goes from a start value above zero where no bounds are given, as a factor
 REACH = 1e3

@@ -6,8 +6,8 @@ from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from numpy.typing import NDArray
 
+from clutchwork.base.arrays import Array
 from clutchwork.declare.schema import Spec, specs
 from clutchwork.fit.failure import FitError
 from clutchwork.laws.bases.tables import Tabulated
@@ -16,7 +16,6 @@ if TYPE_CHECKING:
     from clutchwork.declare.node import Law
     from clutchwork.fit.measurement import Measurement
 
-Array = NDArray[np.float64]
 
 STATIC, KINETIC = "static", "kinetic"
 # by so much a static coefficient of a table is above its kinetic ones, at the least

@@ -8,8 +8,8 @@ from math import log
 from typing import TYPE_CHECKING
 
 import numpy as np
-from numpy.typing import NDArray
 
+from clutchwork.base.arrays import Array
 from clutchwork.fit.intervals import Estimate, limits_at
 from clutchwork.fit.reasons import spans
 
@@ -17,7 +17,6 @@ if TYPE_CHECKING:
     from clutchwork.fit.engine import Solution
     from clutchwork.fit.search import Residuals
 
-Array = NDArray[np.float64]
 
 # how far a parameter that is open is moved: a factor, or so many times its scale
 FACTOR, SCALES = 10.0, 3.0

@@ -7,13 +7,10 @@ from dataclasses import replace
 from math import pi
 
 import numpy as np
-from numpy.typing import NDArray
 
 from clutchwork.fit.estimates import Parameter
 from clutchwork.fit.failure import FitError
 from clutchwork.fit.measurement import Measurement, measurement
-
-Array = NDArray[np.float64]
 
 RPM = pi / 30.0
 # what is left over with another reading, of what is left over now

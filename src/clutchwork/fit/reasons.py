@@ -6,14 +6,13 @@ from math import exp, log
 from typing import TYPE_CHECKING
 
 import numpy as np
-from numpy.typing import NDArray
 
+from clutchwork.base.arrays import Array
 from clutchwork.fit.information import FLOOR, Information
 
 if TYPE_CHECKING:
     from clutchwork.fit.unknown import Unknown
 
-Array = NDArray[np.float64]
 Items = tuple["Unknown", ...]
 
 # part of a parameter in a direction that counts as involved

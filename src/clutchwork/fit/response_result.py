@@ -2,25 +2,30 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-import numpy as np
-from numpy.typing import NDArray
-
-from clutchwork.base.classes import dataclass
-from clutchwork.base.plural import counted
+from clutchwork.base import counted, dataclass
+from clutchwork.base.paths import fitting
 from clutchwork.fit.estimates import ParameterEstimates
 from clutchwork.fit.fitted_record import FittedRecord
-from clutchwork.fit.response_picture import picture
+from clutchwork.plot.chosen import PICTURES
+from clutchwork.plot.figure import figure_of
+from clutchwork.plot.style import COLOURS
 
 if TYPE_CHECKING:
+    from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
+    from clutchwork.fit.traces import Trace
     from clutchwork.run.trajectory import Trajectory
 
-Array = NDArray[np.float64]
+
+MEASURED, FITTED = COLOURS[0], COLOURS[1]
+HEIGHT, LEAST = 45.0, 60.0  # mm, of a row and of all
+# records beside each other
+MOST_BESIDE = 4
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
@@ -64,3 +69,34 @@ class ResponseFit(ParameterEstimates):
     def _head(self) -> str:
         several = f"{counted(len(self.records), 'records')}, " if len(self.records) > 1 else ""
         return f"{several}{self._samples} samples, r2 {self.r2:.6g}"
+
+
+def picture(records: Sequence[FittedRecord], path: str | Path | None = None) -> Figure:
+    """A row for each signal, a column for each record, further ones below; written to `path` when given."""
+    beside = min(len(records), MOST_BESIDE)
+    blocks = [records[first : first + beside] for first in range(0, len(records), beside)]
+    rows = [(block, name) for block in blocks for name in _signals(block)]
+    with figure_of(max(HEIGHT * len(rows), LEAST)) as figure:
+        grid = figure.add_gridspec(len(rows), beside)
+        for row, (block, name) in enumerate(rows):
+            for column, record in enumerate(block):
+                for one in (trace for trace in record.traces if trace.signal == name):
+                    axes = figure.add_subplot(grid[row, column])
+                    _panel(axes, record, one)
+                    axes.set_title(record.label if len(records) > 1 else "", loc="left")
+        figure.axes[0].legend(loc="lower right", bbox_to_anchor=(1.0, 0.98), ncols=2, borderaxespad=0.0)
+        if path is not None:
+            figure.savefig(fitting("plot", path, "fit.png", PICTURES))
+    return figure
+
+
+def _signals(records: Sequence[FittedRecord]) -> list[str]:
+    return list(dict.fromkeys(one.signal for record in records for one in record.traces))
+
+
+def _panel(axes: Axes, record: FittedRecord, one: Trace) -> None:
+    """Measured samples as points, the fitted run as a line."""
+    axes.plot(one.times, one.values, ".", color=MEASURED, markersize=2.5, label="measured")
+    axes.plot(one.times, one.values + record.residuals(one), color=FITTED, linewidth=0.9, label="fitted")
+    axes.set_xlabel("time, s")
+    axes.set_ylabel(f"{one.signal}, {one.unit}")

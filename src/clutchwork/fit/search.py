@@ -6,8 +6,8 @@ from collections.abc import Callable
 from typing import TYPE_CHECKING, Any, ClassVar
 
 import numpy as np
-from numpy.typing import NDArray
 
+from clutchwork.base.arrays import Array
 from clutchwork.fit.engine import STAY, LeastSquares
 from clutchwork.fit.losses import Penalty
 
@@ -15,7 +15,6 @@ if TYPE_CHECKING:
     from clutchwork.fit.model import Model
     from clutchwork.fit.unknowns import Unknowns
 
-Array = NDArray[np.float64]
 
 # relative steps of difference quotients: of a formula, and of a run that has an error of its own
 STEP_EXACT, STEP_RUN = 1e-5, 1e-3

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
+from clutchwork.base.arrays import Array
 from clutchwork.declare.core import core, number
 from clutchwork.fit.failure import FitError
 from clutchwork.model.pools import Pools
@@ -15,7 +16,6 @@ if TYPE_CHECKING:
     from clutchwork.declare.node import Law
     from clutchwork.fit.measurement import Measurement
 
-Array = NDArray[np.float64]
 
 # deviations of the noise within which two coefficients count as equal
 DOUBT = 3.0

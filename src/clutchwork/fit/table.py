@@ -5,11 +5,9 @@ from __future__ import annotations
 from pathlib import Path
 
 import numpy as np
-from numpy.typing import NDArray
 
-from clutchwork.base.classes import dataclass
-from clutchwork.base.errors import near
-from clutchwork.base.quote import listed
+from clutchwork.base import dataclass, listed, near
+from clutchwork.base.arrays import Array
 from clutchwork.declare.quantity import QuantityError
 from clutchwork.declare.units import parse
 from clutchwork.fit.failure import FitError
@@ -19,8 +17,6 @@ from clutchwork.signals.bases.column_heads import meant, split
 from clutchwork.signals.bases.measured import read_columns
 from clutchwork.signals.bases.measured.formats import format_of
 from clutchwork.signals.column import Column
-
-Array = NDArray[np.float64]
 
 CLOCK = "time"
 UNITS = {"time": ("s",), "slip": ("rad/s", "m/s"), "torque": ("N m", "N"), "load": ("N m", "N"), "temperature": ("K",)}

@@ -6,11 +6,9 @@ from collections.abc import Iterator, Mapping
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from numpy.typing import NDArray
 
-from clutchwork.base.classes import dataclass
-from clutchwork.base.errors import near
-from clutchwork.base.quote import quote
+from clutchwork.base import dataclass, near, quote
+from clutchwork.base.arrays import Array
 from clutchwork.declare.quantity import QuantityError, scale_to_si
 from clutchwork.fit.failure import FitError, numbers_of, rising
 from clutchwork.results.forms import Mode
@@ -18,8 +16,6 @@ from clutchwork.results.forms import Mode
 if TYPE_CHECKING:
     from clutchwork.fit.record import Record
     from clutchwork.results.channels import Channel
-
-Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True, eq=False)

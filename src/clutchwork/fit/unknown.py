@@ -5,17 +5,15 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import replace
 from math import exp, inf, log, nextafter
-from typing import TYPE_CHECKING, Any, TypeAlias
+from typing import Any, TypeAlias
 
-from clutchwork.base.classes import dataclass
+from clutchwork.base import dataclass
+from clutchwork.declare.node import Law
+from clutchwork.declare.schema import Spec
 from clutchwork.fit.adjustable import kinetic
 from clutchwork.fit.failure import FitError
 from clutchwork.fit.ordinates import ABOVE, STATIC, ordinates, rival
 from clutchwork.laws.bases.tables import Tabulated
-
-if TYPE_CHECKING:
-    from clutchwork.declare.node import Law
-    from clutchwork.declare.schema import Spec
 
 Pair: TypeAlias = "tuple[float | None, float | None]"
 Bounds: TypeAlias = "Mapping[str, Pair]"

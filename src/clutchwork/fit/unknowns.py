@@ -6,21 +6,17 @@ from collections.abc import Sequence
 from dataclasses import replace
 from itertools import groupby
 from math import inf, log
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
-from clutchwork.base.errors import near
+from clutchwork.base import near
+from clutchwork.base.arrays import Array
+from clutchwork.declare.node import Law
 from clutchwork.fit.adjustable import adjustable, default_free, fixed, kinetic, sum_is_held
 from clutchwork.fit.failure import FitError
 from clutchwork.fit.ordinates import ordinates, with_ordinates
 from clutchwork.fit.unknown import REACH, Bounds, Unknown, below_static, unknowns_of
-
-if TYPE_CHECKING:
-    from clutchwork.declare.node import Law
-
-Array = NDArray[np.float64]
 
 
 class Unknowns:

@@ -7,7 +7,7 @@ from pathlib import Path
 from xml.etree.ElementTree import fromstring
 from zipfile import ZIP_DEFLATED, BadZipFile, ZipFile, ZipInfo
 
-from clutchwork.base.errors import UseError
+from clutchwork.base import UseError
 from clutchwork.base.writing import replaced
 
 # no archive has an earlier one

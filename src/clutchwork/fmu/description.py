@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 import re
-from math import isfinite
+from collections.abc import Iterable
+from math import isfinite, pi
+from typing import NamedTuple
 from xml.etree.ElementTree import Element, SubElement, indent, tostring
 
 from clutchwork.base.bounds import plain
+from clutchwork.declare.units import powers_of
 from clutchwork.fmu.interface import CO_SIMULATION, MODEL_EXCHANGE, Interface
-from clutchwork.fmu.units import add_units, unit_attributes
 from clutchwork.fmu.variables import FmuVariable, VariableKind
 
 CATEGORIES = (
@@ -20,6 +22,8 @@ CATEGORIES = (
 STEPS = 1000
 COPYRIGHT = {"license": "Apache-2.0 (the core)"}
 WORD = re.compile(r"[A-Za-z_][A-Za-z0-9_]*")
+# in the order of the powers of declare.units
+BASES = ("kg", "m", "s", "rad", "K", "A")
 
 
 def description(made: Interface, identifier: str, token: str, version: str, tool: str) -> bytes:
@@ -216,3 +220,38 @@ def _add_steps(root: Element, made: Interface, common: dict[str, str]) -> None:
     size = {"fixedInternalStepSize": repr(float(made.options.step))} if fixed else {}
     rates = DERIVES_THREE | {"maxOutputDerivativeOrder": "1"} if _has_rates(made) else {}
     SubElement(root, "CoSimulation", common | able | size | rates)
+
+
+class Display(NamedTuple):
+    """A unit for display: what is shown is factor times the value, plus an offset."""
+
+    name: str
+    factor: float
+    offset: float = 0.0
+
+
+DISPLAY = {
+    "rad/s": Display("rpm", 30.0 / pi),
+    "rad": Display("deg", 180.0 / pi),
+    "Pa": Display("bar", 1e-5),
+    "K": Display("degC", 1.0, -273.15),
+}
+
+
+def add_units(root: Element, units: Iterable[str]) -> None:
+    """Add the definitions of units."""
+    definitions = SubElement(root, "UnitDefinitions")
+    for unit in sorted(set(units)):
+        made = SubElement(definitions, "Unit", name=unit)
+        powers = {base: str(power) for base, power in zip(BASES, powers_of(unit), strict=True) if power}
+        SubElement(made, "BaseUnit", powers)
+        if unit in DISPLAY:
+            shown = DISPLAY[unit]
+            offset = {"offset": repr(shown.offset)} if shown.offset else {}
+            SubElement(made, "DisplayUnit", {"name": shown.name, "factor": repr(shown.factor)} | offset)
+
+
+def unit_attributes(unit: str) -> dict[str, str]:
+    """What a variable says of its unit."""
+    shown = {"displayUnit": DISPLAY[unit].name} if unit in DISPLAY else {}
+    return {"unit": unit, **shown}

@@ -3,34 +3,47 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from importlib.metadata import version as installed
 from pathlib import Path
 from tempfile import TemporaryDirectory
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 from clutchwork.assembly.system import System
-from clutchwork.base.errors import UseError, warn
+from clutchwork.base import UseError, html, quote
+from clutchwork.base.bounds import in_words
+from clutchwork.base.errors import warn
 from clutchwork.base.paths import fitting
-from clutchwork.base.quote import quote
 from clutchwork.codegen.sources import licence
 from clutchwork.declare.calls import explained
 from clutchwork.declare.options import Options
 from clutchwork.driveline.driveline import Driveline
 from clutchwork.fmu import archive
-from clutchwork.fmu.description import description
+from clutchwork.fmu.description import description, structured
 from clutchwork.fmu.interface import KINDS, Interface, advice, interface
 from clutchwork.fmu.libraries import libraries
-from clutchwork.fmu.manual import manual
 from clutchwork.fmu.names import plain
 from clutchwork.fmu.resource import resource
+from clutchwork.fmu.variables import FmuVariable, VariableKind
 from clutchwork.run.settings import merged
-
-if TYPE_CHECKING:
-    from collections.abc import Mapping
 
 VERSIONS = ("2.0", "3.0")
 PICTURES = {"2.0": "model.png", "3.0": "terminalsAndIcons/icon.png"}
+HOW = (
+    "Contacts lock, slip and break away inside of the steps of this FMU, at their exact instants, whatever the step "
+    "size of the master.",
+    "Inputs are held over a step where nothing else is said, which lags behind a ramp by half a step. Give their rates "
+    "too, as {rates}: then a ramp is exact.",
+    "Fixed parameters are set before the initialisation ends, tunable ones at any time. Values out of bounds are "
+    "refused, with a message in the log, and nothing changes.",
+    "Events are messages of the log category `events`.",
+)
+RATES = {"2.0": "input derivatives (fmi2SetRealInputDerivatives)", "3.0": "the inputs der(...)"}
+PARTS = (
+    ("Inputs", (VariableKind.INPUT, VariableKind.SLOPE)),
+    ("Parameters", (VariableKind.TUNABLE, VariableKind.FIXED)),
+    ("Outputs", (VariableKind.SIGNAL, VariableKind.MODE)),
+)
 
 
 @explained("cw.export_fmu", path="'car.fmu'")
@@ -120,3 +133,32 @@ def _picture(system: System) -> bytes:
         path = Path(folder) / "model.png"
         draw(system, path)
         return path.read_bytes()
+
+
+def manual(made: Interface, version: str) -> bytes:
+    """The page of an FMU."""
+    parts = [html.heading(made.system.name)]
+    parts += [html.paragraph(words.format(rates=RATES[version])) for words in HOW]
+    for title, kinds in PARTS:
+        known = [one for _, one in made.of(*kinds) if not one.hidden]
+        known = [one for one in known if version == "3.0" or one.kind is not VariableKind.SLOPE]
+        head = ("name", "unit", "start", "bounds", "kind", "meaning")
+        parts += [html.heading(title), html.table(head, map(_line, known), most=len(known))]
+    if made.not_exchanged:
+        parts += [html.heading("Why it is not for model exchange")]
+        parts += [html.paragraph(why) for why in made.not_exchanged]
+    if made.left_out:
+        parts += [
+            html.heading("Numbers that are not parameters"),
+            html.table(("name", "why"), made.left_out, most=len(made.left_out)),
+        ]
+    body = html.page(*parts)
+    called = f"<title>{html.text(made.system.name)}</title>"
+    top = f'<!DOCTYPE html>\n<html lang="en"><head><meta charset="utf-8">{called}</head>'
+    return f"{top}<body>{body}</body></html>\n".encode()
+
+
+def _line(one: FmuVariable) -> tuple[str, ...]:
+    given = one.kind in (VariableKind.INPUT, VariableKind.SLOPE, VariableKind.TUNABLE, VariableKind.FIXED)
+    kind = one.kind.name.lower() if given else ""
+    return structured(one.name), one.unit, f"{one.start:g}" if given else "", in_words(one.bounds), kind, one.about

@@ -9,7 +9,7 @@ from typing import NamedTuple
 import numpy as np
 
 from clutchwork.assembly.system import System
-from clutchwork.base.errors import ModelError
+from clutchwork.base import ModelError
 from clutchwork.declare.options import Options
 from clutchwork.fmu.terms import NumberOfForm, numbers_of
 from clutchwork.fmu.variables import FmuVariable, VariableKind

@@ -10,8 +10,7 @@ import numpy as np
 
 from clutchwork.assembly.system import System
 from clutchwork.assembly.wiring import wiring
-from clutchwork.base.classes import dataclass
-from clutchwork.base.errors import ModelError, ModelWarning, Problem, UseError
+from clutchwork.base import ModelError, ModelWarning, Problem, UseError, dataclass
 from clutchwork.declare.layout import ROW
 from clutchwork.declare.options import Options
 from clutchwork.fmu.exchange import ContinuousState, exchange, exchange_faults

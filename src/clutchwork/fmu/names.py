@@ -6,8 +6,7 @@ from collections.abc import Collection, Iterable, Iterator, Sequence
 from fnmatch import fnmatchcase
 from typing import Any
 
-from clutchwork.base.errors import UseError, near
-from clutchwork.base.quote import listed, quote
+from clutchwork.base import UseError, listed, near, quote
 from clutchwork.fmu.variables import LeftOut
 from clutchwork.results.channels import Channel, Channels
 from clutchwork.results.forms import Mode

@@ -8,8 +8,8 @@ from hashlib import sha256
 from typing import Any, TypeVar
 
 from clutchwork.assembly.wiring import wiring
+from clutchwork.base import dataclass
 from clutchwork.base.bounds import in_words
-from clutchwork.base.classes import dataclass
 from clutchwork.declare.core import core
 from clutchwork.declare.layout import CAUSES, MODES, STATUS
 from clutchwork.declare.schema import Role

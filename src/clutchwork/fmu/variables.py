@@ -7,7 +7,7 @@ from enum import IntEnum
 from math import inf
 from typing import NamedTuple
 
-from clutchwork.base.classes import dataclass
+from clutchwork.base import dataclass
 from clutchwork.results.forms import Form
 
 

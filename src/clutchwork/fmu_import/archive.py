@@ -11,8 +11,7 @@ from contextlib import contextmanager
 from pathlib import Path
 from zipfile import ZIP_DEFLATED, ZIP_STORED, BadZipFile, ZipFile, ZipInfo
 
-from clutchwork.base.errors import FMUError
-from clutchwork.base.quote import quote
+from clutchwork.base import FMUError, quote
 from clutchwork.base.regular import open_regular, reason
 
 DESCRIPTION = "modelDescription.xml"

@@ -8,9 +8,7 @@ from contextlib import suppress
 from math import isfinite
 from xml.etree.ElementTree import Element, ParseError, TreeBuilder, XMLParser
 
-from clutchwork.base.classes import dataclass
-from clutchwork.base.errors import FMUError, near
-from clutchwork.base.quote import listed, quote
+from clutchwork.base import FMUError, dataclass, listed, near, quote
 from clutchwork.declare.unit_words import OTHER_ZERO
 from clutchwork.declare.units import Scale, parse
 

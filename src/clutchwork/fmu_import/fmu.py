@@ -2,29 +2,33 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+import platform
+import sys
+from collections.abc import Callable, Mapping, Sequence
 from functools import cached_property
 from math import isfinite
 from numbers import Real
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from clutchwork.base.errors import FMUError, UseError
+from clutchwork.base import FMUError, UseError, quote
 from clutchwork.base.paths import path_of
-from clutchwork.base.quote import quote
 from clutchwork.declare.calls import explained
 from clutchwork.declare.quantity import QuantityError, has_unit, in_si
 from clutchwork.fmu_import import archive
 from clutchwork.fmu_import.description import INPUT, OUTPUT, PARAMETER, Description, FMUVariable, read
 from clutchwork.fmu_import.library import Assignment
 from clutchwork.fmu_import.output import Output
-from clutchwork.fmu_import.platforms import library_of
 
 if TYPE_CHECKING:
     from clutchwork.declare.node import Number
     from clutchwork.signals.sampled import Sampled
 
 UNTRUSTED = "runs the library of another program with your permissions: give trust=True if you trust its source"
+ENDINGS = {"linux": ".so", "win32": ".dll", "darwin": ".dylib"}
+TWO = {"linux": "linux", "win32": "win", "darwin": "darwin"}
+THREE = {"linux": "linux", "win32": "windows", "darwin": "darwin"}
+PROCESSORS = {"amd64": "x86_64", "x86_64": "x86_64", "arm64": "aarch64", "aarch64": "aarch64"}
 
 
 class FMU:
@@ -151,3 +155,31 @@ def _named(name: str, given: Any, kind: Any, such: str, problems: list[str]) -> 
         else:
             made[key] = convert(value)
     return made
+
+
+def library_of(made: Description, names: Sequence[str]) -> str:
+    """The entry with the library for this machine; FMUError names the platforms that there are."""
+    known = places(made.version, made.identifier)
+    found = next((name for name in known if name in names), None)
+    if found is None:
+        there = sorted({name.split("/")[1] for name in names if name.startswith("binaries/") and name.count("/") > 1})
+        has = f"it has those of {', '.join(there)}" if there else "it has no library at all"
+        raise FMUError(f"it has no library {known[0]} for this machine; {has}")
+    return found
+
+
+def places(version: str, identifier: str) -> list[str]:
+    """Entries that may be the library for this machine, the one of the standard first."""
+    ending = ENDINGS.get(sys.platform, ".so")
+    return [f"binaries/{folder}/{identifier}{ending}" for folder in _folders(version)]
+
+
+def _folders(version: str) -> list[str]:
+    """Folders for this machine, the likely one first."""
+    processor = PROCESSORS.get(platform.machine().lower(), platform.machine().lower())
+    system = sys.platform
+    three = f"{processor}-{THREE.get(system, system)}"
+    if version == "3.0":
+        return [three]
+    # FMI 2.0 names the processors of its time alone
+    return [f"{TWO.get(system, system)}64", three] if processor == "x86_64" else [three, f"{TWO.get(system, system)}64"]

@@ -6,8 +6,7 @@ from collections.abc import Mapping
 from math import isfinite
 from typing import TYPE_CHECKING, Any
 
-from clutchwork.base.errors import FMUError
-from clutchwork.base.quote import quote
+from clutchwork.base import FMUError, quote
 from clutchwork.fmu_import.messages import Command
 from clutchwork.fmu_import.process import Process
 

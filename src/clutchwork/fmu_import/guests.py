@@ -6,8 +6,7 @@ from collections.abc import Callable, Iterable, Mapping
 from functools import partial
 from typing import TYPE_CHECKING, Any
 
-from clutchwork.base.errors import FMUError
-from clutchwork.base.quote import quote
+from clutchwork.base import FMUError, quote
 from clutchwork.fmu_import.output import Output
 
 if TYPE_CHECKING:

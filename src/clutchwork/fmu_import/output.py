@@ -5,9 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import Any
 
-from clutchwork.base.classes import dataclass
-from clutchwork.base.errors import FMUError
-from clutchwork.base.quote import quote
+from clutchwork.base import FMUError, dataclass, quote
 
 
 @dataclass(frozen=True)

@@ -16,7 +16,7 @@ from tempfile import mkdtemp
 from threading import Timer
 from typing import BinaryIO
 
-from clutchwork.base.errors import FMUError
+from clutchwork.base import FMUError
 from clutchwork.fmu_import.archive import unpack
 from clutchwork.fmu_import.library import Assignment
 from clutchwork.fmu_import.messages import Answer, Command, Format

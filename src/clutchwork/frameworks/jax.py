@@ -9,9 +9,8 @@ from typing import Any
 
 import numpy as np
 
-from clutchwork.base.errors import UseError
+from clutchwork.base import UseError, quote
 from clutchwork.base.extras import need
-from clutchwork.base.quote import quote
 from clutchwork.declare.calls import explained
 from clutchwork.frameworks.lines import no_second, refuse, values, values_and_matrix
 from clutchwork.gradients.differentiable import Differentiable

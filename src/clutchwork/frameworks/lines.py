@@ -5,13 +5,10 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 import numpy as np
-from numpy.typing import NDArray
 
-from clutchwork.base.errors import UseError
-from clutchwork.base.plural import counted
+from clutchwork.base import UseError, counted
+from clutchwork.base.arrays import Array
 from clutchwork.gradients.differentiable import Differentiable
-
-Array = NDArray[np.float64]
 
 
 def values(f: Differentiable, x: Array) -> Array:

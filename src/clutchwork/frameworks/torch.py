@@ -6,9 +6,8 @@ from collections.abc import Callable
 from functools import cache
 from typing import Any
 
-from clutchwork.base.errors import UseError
+from clutchwork.base import UseError, quote
 from clutchwork.base.extras import need
-from clutchwork.base.quote import quote
 from clutchwork.declare.calls import explained
 from clutchwork.frameworks.lines import no_second, refuse, values, values_and_matrix
 from clutchwork.gradients.differentiable import Differentiable

@@ -8,7 +8,7 @@ from itertools import combinations, permutations
 from math import isnan
 from typing import TYPE_CHECKING
 
-from clutchwork.base.classes import dataclass
+from clutchwork.base import dataclass
 from clutchwork.gearbox.motion import combination
 from clutchwork.gearbox.state import GearState, state
 

@@ -7,7 +7,7 @@ from fractions import Fraction
 from math import sqrt
 from typing import TYPE_CHECKING, NamedTuple
 
-from clutchwork.base.classes import dataclass
+from clutchwork.base import dataclass
 from clutchwork.declare.rational import Echelon, Row, eliminate, exact
 from clutchwork.gearbox.gear_set import HOUSING, GearSet
 

@@ -7,11 +7,8 @@ from dataclasses import fields
 from pathlib import Path
 from typing import Any
 
-from clutchwork.base.classes import dataclass
-from clutchwork.base.errors import Problem, UseError, near
+from clutchwork.base import Problem, UseError, counted, dataclass, listed, near, quote
 from clutchwork.base.paths import fitting, path_of
-from clutchwork.base.plural import counted
-from clutchwork.base.quote import listed, quote
 from clutchwork.base.verbs import do
 from clutchwork.base.writing import put
 from clutchwork.declare.calls import explain, explained, explained_methods

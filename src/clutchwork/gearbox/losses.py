@@ -6,10 +6,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from math import isfinite, log10, pi
 from typing import TYPE_CHECKING, NamedTuple, TypeAlias
 
-from clutchwork.base.classes import dataclass
-from clutchwork.base.errors import UseError, near
-from clutchwork.base.plural import columns
-from clutchwork.base.quote import quote
+from clutchwork.base import UseError, columns, dataclass, near, quote
 from clutchwork.declare.calls import explain
 from clutchwork.gearbox.balance import lossy_balance
 from clutchwork.gearbox.motion import speeds as free_speeds

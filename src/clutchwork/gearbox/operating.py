@@ -6,9 +6,7 @@ from collections.abc import Mapping
 from fractions import Fraction
 from typing import TYPE_CHECKING, NamedTuple
 
-from clutchwork.base.classes import dataclass
-from clutchwork.base.errors import UseError
-from clutchwork.base.quote import listed, quote
+from clutchwork.base import UseError, dataclass, listed, quote
 from clutchwork.declare.rational import Row, eliminate, exact
 from clutchwork.gearbox.balance import GIVEN, LOAD, BalanceRows, BalanceSolution, UnknownTorque, no_losses
 from clutchwork.gearbox.gear_set import HOUSING

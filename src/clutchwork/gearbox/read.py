@@ -6,8 +6,7 @@ from collections.abc import Mapping
 from functools import cache, lru_cache
 from typing import Any, NamedTuple
 
-from clutchwork.base.errors import ModelError, Problem, advised
-from clutchwork.base.quote import quote
+from clutchwork.base import ModelError, Problem, advised, quote
 from clutchwork.gearbox import checks, store
 from clutchwork.gearbox.definition import Definition
 

@@ -6,8 +6,7 @@ from collections.abc import Iterator, Mapping
 from math import isfinite
 from typing import Any
 
-from clutchwork.base.errors import Problem, near
-from clutchwork.base.quote import listed, quote
+from clutchwork.base import Problem, listed, near, quote
 from clutchwork.gearbox.definition import ELEMENTS, Definition, ShiftElement
 from clutchwork.gearbox.gear_set import HOUSING, KINDS, GearSet
 

@@ -6,7 +6,7 @@ from collections.abc import Mapping
 from fractions import Fraction
 from typing import TYPE_CHECKING
 
-from clutchwork.base.classes import dataclass
+from clutchwork.base import dataclass
 from clutchwork.gearbox.balance import Balance, ideal_balance, lossy_balance
 from clutchwork.gearbox.gear_set import HOUSING
 from clutchwork.gearbox.motion import GEAR, combination, speeds

@@ -7,7 +7,7 @@ from collections.abc import Iterable
 from math import isfinite, isnan
 from typing import TYPE_CHECKING
 
-from clutchwork.base.plural import columns
+from clutchwork.base import columns
 from clutchwork.gearbox.analysis import capacities, states, swaps
 from clutchwork.gearbox.motion import SPLIT, all_combinations, combination
 from clutchwork.gearbox.operating import mechanical_points

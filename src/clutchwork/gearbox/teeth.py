@@ -9,7 +9,7 @@ from collections.abc import Iterator
 from math import gcd, pi, sin
 from typing import TYPE_CHECKING
 
-from clutchwork.base.errors import Problem
+from clutchwork.base import Problem
 
 if TYPE_CHECKING:
     from clutchwork.gearbox.gear_set import GearSet

@@ -7,9 +7,7 @@ from dataclasses import field
 from math import ceil, floor, log10
 from typing import Any
 
-from clutchwork.base import html
-from clutchwork.base.classes import dataclass
-from clutchwork.base.errors import advised
+from clutchwork.base import advised, dataclass, html
 from clutchwork.base.quote import printable
 from clutchwork.declare.calls import explained_methods
 

@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from clutchwork.assembly.wiring import HOUSING, Branch
-from clutchwork.base.classes import dataclass
+from clutchwork.base import dataclass
 from clutchwork.declare.schema import specs
 from clutchwork.hints.motion import SlipAccelerations
 from clutchwork.results.channels import LOCKED

@@ -2,18 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from typing import TYPE_CHECKING, Any, ClassVar
+from collections.abc import Iterator, Mapping
+from typing import Any, ClassVar
 
 from clutchwork.declare import Role, State, component, formula
 from clutchwork.laws.bases.expression import SLIP
 from clutchwork.laws.bases.formula import NAME, SLIPS, TAKEN, FormulaLaw, Found, no_number
 from clutchwork.laws.bases.jumps import where
-
-if TYPE_CHECKING:
-    from collections.abc import Iterator
-
-    from clutchwork.laws.bases.program import Program
+from clutchwork.laws.bases.program import Program
 
 MOST_STATES = 4
 SPAN = 1e-5

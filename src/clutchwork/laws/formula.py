@@ -2,17 +2,13 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from collections.abc import Iterator
 
 from clutchwork.declare import Role, component
 from clutchwork.laws.bases.expression import SLIP
 from clutchwork.laws.bases.formula import ROUND_OFF, SLIPS, FormulaLaw, Found, no_number
 from clutchwork.laws.bases.jumps import where
-
-if TYPE_CHECKING:
-    from collections.abc import Iterator
-
-    from clutchwork.laws.bases.program import Program
+from clutchwork.laws.bases.program import Program
 
 
 @component(Role.LAW)

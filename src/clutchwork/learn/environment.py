@@ -5,8 +5,8 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable, Mapping
 from typing import TYPE_CHECKING, Any, Unpack
 
+from clutchwork.base import quote
 from clutchwork.base.extras import need
-from clutchwork.base.quote import quote
 from clutchwork.declare.calls import explained
 from clutchwork.learn.moment import Moment
 from clutchwork.learn.moments import Moments

@@ -11,9 +11,7 @@ from gymnasium import Env, spaces
 from numpy.typing import NDArray
 
 from clutchwork.assembly.system import System
-from clutchwork.base.errors import ClutchworkError, UseError
-from clutchwork.base.plural import counted
-from clutchwork.base.quote import quote
+from clutchwork.base import ClutchworkError, UseError, counted, quote
 from clutchwork.learn.moment import Moment
 from clutchwork.learn.ranges import Ranges
 from clutchwork.learn.variation import Draw

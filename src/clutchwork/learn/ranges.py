@@ -11,11 +11,10 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from clutchwork.base.classes import dataclass
-from clutchwork.base.quote import quote
+from clutchwork.base import dataclass, quote
+from clutchwork.base.arrays import Array
 from clutchwork.declare.quantity import QuantityError, has_unit
 
-Array = NDArray[np.float64]
 InSI = Callable[[str, Any], Any]
 RANGE = "give (low, high): finite, in the unit of it or with one that fits, the lower one first"
 

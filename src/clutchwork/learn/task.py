@@ -7,9 +7,7 @@ from functools import partial
 from math import inf
 from typing import TYPE_CHECKING, Any
 
-from clutchwork.base.classes import dataclass
-from clutchwork.base.errors import UseError
-from clutchwork.base.quote import quote
+from clutchwork.base import UseError, dataclass, quote
 from clutchwork.declare import quantity
 from clutchwork.declare.to_si import TargetUnit
 from clutchwork.learn.ranges import Ranges, ranges

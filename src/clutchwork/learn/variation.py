@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from clutchwork.base.quote import quote
+from clutchwork.base import quote
 from clutchwork.learn.ranges import RANGE, InSI, is_range, plain
 
 if TYPE_CHECKING:

@@ -12,8 +12,7 @@ from gymnasium.vector import AutoresetMode, VectorEnv
 from gymnasium.vector.utils import batch_space
 from numpy.typing import NDArray
 
-from clutchwork.base.errors import ClutchworkError, UseError
-from clutchwork.base.quote import quote
+from clutchwork.base import ClutchworkError, UseError, quote
 from clutchwork.learn.moments import Moments
 from clutchwork.learn.task import Task
 from clutchwork.results.events import Events

@@ -7,9 +7,7 @@ from fnmatch import fnmatchcase
 from typing import TYPE_CHECKING, Any
 
 from clutchwork.assembly.wiring import wiring
-from clutchwork.base.classes import dataclass
-from clutchwork.base.errors import near
-from clutchwork.base.quote import quote
+from clutchwork.base import dataclass, near, quote
 from clutchwork.declare.ports import ports
 from clutchwork.results.channels import ACCELERATION, channels
 from clutchwork.results.forms import Mode

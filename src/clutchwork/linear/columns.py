@@ -8,15 +8,14 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
-from clutchwork.base.classes import dataclass
+from clutchwork.base import dataclass
+from clutchwork.base.arrays import Array
 from clutchwork.linear.own_states import apart, followers, own_states, wound_up
 from clutchwork.results.channels import ANGLE, PLACE, SPEED
 
 if TYPE_CHECKING:
     from clutchwork.linear.chosen import Excitation
     from clutchwork.linear.motion import Motion
-
-Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True, eq=False)

@@ -6,9 +6,9 @@ from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
 import numpy as np
-from numpy.typing import NDArray
 
-from clutchwork.base.classes import dataclass
+from clutchwork.base import dataclass
+from clutchwork.base.arrays import Array
 from clutchwork.linear.columns import StateColumns, columns
 from clutchwork.linear.motion import Motion
 from clutchwork.linear.own_states import own_states
@@ -16,8 +16,6 @@ from clutchwork.linear.shares import Holding, torque_change
 
 if TYPE_CHECKING:
     from clutchwork.linear.chosen import Excitation
-
-Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True)

@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
-from clutchwork.base.errors import UseError
+from clutchwork.assembly.system import System
+from clutchwork.base import UseError
+from clutchwork.base.arrays import Array
 from clutchwork.declare.calls import explained
 from clutchwork.linear.chosen import Excitation, chosen_inputs, chosen_outputs
 from clutchwork.linear.equations import equations
@@ -19,15 +20,10 @@ from clutchwork.linear.own_states import own_states
 from clutchwork.linear.quantity import Quantity
 from clutchwork.linear.result import Linear
 from clutchwork.results.channels import channels
-
-if TYPE_CHECKING:
-    from clutchwork.assembly.system import System
-    from clutchwork.results.forms import Form
-    from clutchwork.run.simulation import Assembles
-    from clutchwork.run.trajectory import Trajectory
-    from clutchwork.stepping.simulator import Simulator
-
-Array = NDArray[np.float64]
+from clutchwork.results.forms import Form
+from clutchwork.run.simulation import Assembles
+from clutchwork.run.trajectory import Trajectory
+from clutchwork.stepping.simulator import Simulator
 
 # what of an output comes from the slope of an input and is round-off
 ROUND_OFF = 1e-9

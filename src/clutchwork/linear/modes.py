@@ -9,9 +9,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
-from clutchwork.base import html
-from clutchwork.base.classes import dataclass
-from clutchwork.base.plural import columns
+from clutchwork.base import columns, dataclass, html
 from clutchwork.declare.calls import explained_methods
 
 if TYPE_CHECKING:

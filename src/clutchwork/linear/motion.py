@@ -2,22 +2,26 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
 
 from clutchwork.assembly.wiring import HOUSING
-from clutchwork.linear.locked import Free, free_motion
+from clutchwork.base import dataclass
+from clutchwork.base.arrays import Array
 from clutchwork.linear.own_states import preference
-from clutchwork.linear.ties import Ties
 from clutchwork.results.forms import LOCKED
 
 if TYPE_CHECKING:
     from clutchwork.declare.node import Node
     from clutchwork.linear.instant import Instant
 
-Array = NDArray[np.float64]
+# what is left of a row after elimination, beside the row, that counts as round-off
+ROUND_OFF = 1e-10
+# a pivot is at least this part of the largest number of its row
+LEAST_PIVOT = 0.1
 
 
 class Local:
@@ -119,3 +123,80 @@ class Motion:
             shift[kept] = np.linalg.solve(self.mass[np.ix_(kept, kept)], self.mass_p[kept])
             shift[np.abs(shift) < 1e-13] = 0.0
         return shift
+
+
+@dataclass(frozen=True, eq=False)
+class Free:
+    """Speeds over those that are kept and the prescribed ones: v = Z x + Zp p, with B v + beta p = 0 for all x: (4)."""
+
+    kept: NDArray[np.intp]  # independent speeds that stay, in the order of preference
+    Z: Array
+    Zp: Array
+    ties: Array  # rows over the prescribed speeds that must stay zero: contacts lock these to each other
+
+
+def free_motion(B: Array, beta: Array, preference: Sequence[int]) -> Free:
+    """Eliminate one speed per independent row of B v + beta p = 0; those that come early in `preference` stay."""
+    n, prescribed = B.shape[1], beta.shape[1]
+    rank_of = np.empty(n, dtype=int)
+    rank_of[np.asarray(preference, dtype=int)] = np.arange(n)
+    rows, sizes = np.hstack([B, beta]).astype(float), np.max(np.abs(B), axis=1, initial=0.0)
+    left, pivots = list(range(len(rows))), dict[int, int]()
+    while left:
+        row = max(left, key=lambda i: float(np.max(np.abs(rows[i, :n]), initial=0.0) / (sizes[i] or 1.0)))
+        largest = float(np.max(np.abs(rows[row, :n]), initial=0.0))
+        if largest <= ROUND_OFF * sizes[row]:
+            break
+        candidates = np.flatnonzero(np.abs(rows[row, :n]) >= LEAST_PIVOT * largest)
+        column = int(max(candidates, key=lambda c: rank_of[c]))
+        rows[row] /= rows[row, column]
+        for other in range(len(rows)):
+            if other != row:
+                rows[other] -= rows[other, column] * rows[row]
+                rows[other, column] = 0.0
+        pivots[column] = row
+        left.remove(row)
+    kept = np.array([i for i in preference if i not in pivots], dtype=int)
+    Z, Zp = np.zeros((n, len(kept))), np.zeros((n, prescribed))
+    Z[kept, np.arange(len(kept))] = 1.0
+    for column, row in pivots.items():
+        Z[column], Zp[column] = -rows[row, kept], -rows[row, n:]
+    ties = [rows[i, n:] for i in left if np.max(np.abs(rows[i, n:]), initial=0.0) > ROUND_OFF]
+    return Free(kept, Z, Zp, np.array(ties).reshape(len(ties), prescribed))
+
+
+class Ties:
+    """Rows of ratios that vary over speeds and prescribed speeds, and what is known of them at the instant: (10)."""
+
+    def __init__(self, instant: Instant, ratio: Array, D: Array, delta: Array) -> None:
+        first = self.first = np.asarray(instant.system.transmission_element, dtype=int)
+        second = self.second = first + 1
+        self.followers = np.asarray(instant.system.transmission_speed, dtype=int)
+        self.ratio = ratio
+        self.row = D[first] - self.ratio[:, None] * D[second]
+        self.shift = delta[first] - self.ratio[:, None] * delta[second]
+        self.torque = instant.part("element_torque")[first]
+        self.rate = self._over(instant, "speed")
+        self.acceleration = self._over(instant, "acceleration")
+
+    def _over(self, instant: Instant, part: str) -> Array:
+        """Second rate of each, or its time derivative."""
+        moving, branches = instant.part(part), instant.wiring.elements
+        found = [
+            sum(factor * moving[node] for node, factor in branches[way].direction.items() if node != HOUSING)
+            for way in self.second
+        ]
+        return np.array(found, dtype=float)
+
+    def beside(self, B: Array, beta: Array) -> tuple[Array, Array]:
+        """Rows of locked contacts and of these, over speeds; over prescribed speeds and changes of the ties."""
+        held, ties = len(B), len(self.first)
+        changes = np.vstack([np.zeros((held, ties)), -np.eye(ties)])
+        return np.vstack([B, self.row]), np.hstack([np.vstack([beta, self.shift]), changes])
+
+    def mass(self, mass: Array) -> Array:
+        """The mass matrix without the units that stand for speeds that follow."""
+        made = mass.copy()
+        places = self.followers[self.followers >= 0]
+        made[places, places] = 0.0
+        return made

@@ -9,14 +9,14 @@ import numpy as np
 from numpy.typing import NDArray
 
 from clutchwork.assembly.shared_states import state_scales
-from clutchwork.base.classes import dataclass
+from clutchwork.base import dataclass
+from clutchwork.base.arrays import Array
 from clutchwork.results.channels import ANGLE
 
 if TYPE_CHECKING:
     from clutchwork.assembly.wiring import Wiring
     from clutchwork.linear.instant import Instant
 
-Array = NDArray[np.float64]
 
 # what of a rate is left beside others that it may follow from
 ROUND_OFF = 1e-9

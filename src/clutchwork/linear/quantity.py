@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from clutchwork.base.classes import dataclass
+from clutchwork.base import dataclass
 
 
 def per_second(unit: str) -> str:

@@ -5,9 +5,8 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from clutchwork.base.classes import dataclass
-
-Array = NDArray[np.float64]
+from clutchwork.base import dataclass
+from clutchwork.base.arrays import Array
 
 ROUND_OFF = 1e-9
 

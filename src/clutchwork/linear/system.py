@@ -8,7 +8,7 @@ from typing import Any
 
 from numpy.typing import NDArray
 
-from clutchwork.base.classes import dataclass
+from clutchwork.base import dataclass
 from clutchwork.declare.layout import MODES
 from clutchwork.linear.modes import NaturalModes, eigenvalues, natural_modes
 from clutchwork.linear.quantity import Quantity

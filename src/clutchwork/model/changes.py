@@ -13,19 +13,10 @@ from dataclasses import dataclass, field, fields, replace
 from functools import cache
 from typing import Any
 
-from clutchwork.base.errors import ModelError, Problem, near, nearest
+from clutchwork.base import ModelError, Problem, near, quote
+from clutchwork.base.errors import nearest
 from clutchwork.base.frozen import Frozen
-from clutchwork.base.quote import quote
-from clutchwork.declare.node import (
-    DIRECT,
-    Component,
-    Law,
-    Node,
-    Signal,
-    TabledComposite,
-    ThermalNode,
-    is_reference,
-)
+from clutchwork.declare.node import DIRECT, Component, Law, Node, Signal, TabledComposite, ThermalNode, is_reference
 from clutchwork.declare.schema import Spec, specs
 from clutchwork.declare.to_si import TargetUnit, field_in_si, settled
 from clutchwork.model.components import component_problems

@@ -7,8 +7,7 @@ from math import inf, isfinite
 from numbers import Real
 from typing import Any
 
-from clutchwork.base.errors import Problem, near
-from clutchwork.base.quote import listed, quote
+from clutchwork.base import Problem, listed, near, quote
 from clutchwork.declare.node import Component, Domain, Entry, Law, Node, ThermalNode
 from clutchwork.declare.ports import directions, ports
 from clutchwork.declare.schema import REGISTRY, Role, specs

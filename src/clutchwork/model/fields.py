@@ -8,8 +8,7 @@ from functools import cache
 from numbers import Real
 from typing import Any
 
-from clutchwork.base.errors import Problem, near
-from clutchwork.base.quote import quote
+from clutchwork.base import Problem, near, quote
 from clutchwork.declare.expected_value import wanted
 from clutchwork.declare.node import Component, Domain, Law, Node, Signal, ThermalNode, is_reference
 from clutchwork.declare.quantity import has_unit, within

@@ -2,28 +2,23 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable, Sequence
 from dataclasses import fields, is_dataclass
 from functools import cached_property
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import Any, NamedTuple
 
-from clutchwork.base.classes import dataclass
-from clutchwork.declare.node import TabledComposite
+from clutchwork.base import Problem, dataclass
+from clutchwork.declare.node import Component, Signal, TabledComposite
+from clutchwork.declare.rational import Row
 from clutchwork.declare.wording import of_files
 from clutchwork.model.kinematics import kinematics
 from clutchwork.model.loads import load_problems
+from clutchwork.model.model import Model
 from clutchwork.model.parts import Parts, Sensor
 from clutchwork.model.problems import TOO_FAR_APART, model_advice, no_shaft, part_problems
 from clutchwork.model.settings import settings_problems
 from clutchwork.model.start import Started, start
 from clutchwork.model.structure import Kinematics, Mechanism
-
-if TYPE_CHECKING:
-    from collections.abc import Iterable, Sequence
-
-    from clutchwork.base.errors import Problem
-    from clutchwork.declare.node import Component, Signal
-    from clutchwork.declare.rational import Row
-    from clutchwork.model.model import Model
 
 
 @dataclass(frozen=True)

@@ -6,17 +6,13 @@ See docs/theory/reduction.md.
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from collections.abc import Callable, Iterator, Sequence
+from fractions import Fraction
 
-from clutchwork.base.errors import Problem, near
-from clutchwork.base.quote import listed, quote
+from clutchwork.base import Problem, listed, near, quote
 from clutchwork.declare.rational import MINUS, ONE, Echelon, Row, eliminate, plus, smallest
 from clutchwork.model import massless, variable_ratios
 from clutchwork.model.structure import Kinematics, Mechanism, RigidRow
-
-if TYPE_CHECKING:
-    from collections.abc import Callable, Iterator, Sequence
-    from fractions import Fraction
 
 
 def kinematics(

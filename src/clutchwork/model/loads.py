@@ -6,18 +6,14 @@ other row does. It exists where the row is not a sum of the others, and is found
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
+from collections.abc import Iterator, Mapping
+from typing import Any
 
-from clutchwork.base.errors import Problem
+from clutchwork.base import Problem
 from clutchwork.declare.rational import MINUS, ONE, ZERO, Row, eliminate, plus, smallest
 from clutchwork.declare.schema import Role
 from clutchwork.declare.wording import path_of
-from clutchwork.model.structure import follows_load
-
-if TYPE_CHECKING:
-    from collections.abc import Iterator, Mapping
-
-    from clutchwork.model.structure import Mechanism, RigidRow
+from clutchwork.model.structure import Mechanism, RigidRow, follows_load
 
 
 def load_arrays(model: Mechanism) -> dict[str, Any]:

@@ -5,19 +5,16 @@ See docs/theory/reduction.md, Shafts without inertia.
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any, NamedTuple
+from collections.abc import Callable, Iterable, Iterator
+from fractions import Fraction
+from typing import Any, NamedTuple
 
-from clutchwork.base.errors import Problem
-from clutchwork.base.quote import quote
+from clutchwork.base import Problem, quote
 from clutchwork.declare.node import Domain
 from clutchwork.declare.rational import ONE, ZERO, Row, eliminate, exact, plus
 from clutchwork.declare.schema import Role
 from clutchwork.declare.wording import path_of
 from clutchwork.model.structure import Kinematics, Mechanism, RigidRow
-
-if TYPE_CHECKING:
-    from collections.abc import Callable, Iterable, Iterator
-    from fractions import Fraction
 
 # initial twists that were rounded when they were written may differ by this share
 ROUNDING = exact(1e-6)

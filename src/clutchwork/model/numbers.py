@@ -7,8 +7,7 @@ from math import inf, isfinite
 from numbers import Real
 from typing import Any, NamedTuple
 
-from clutchwork.base.errors import Problem
-from clutchwork.base.quote import listed, quote
+from clutchwork.base import Problem, listed, quote
 from clutchwork.declare.quantity import PLAIN, QuantityError, has_unit, in_si, within
 from clutchwork.declare.schema import Spec
 from clutchwork.declare.units import Scale

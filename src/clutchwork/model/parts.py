@@ -6,7 +6,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import field, replace
 from typing import Any
 
-from clutchwork.base.classes import dataclass
+from clutchwork.base import dataclass
 from clutchwork.declare.node import HOUSING, Component, Node, Part, Rate, ThermalNode
 from clutchwork.declare.ports import ports
 from clutchwork.declare.schema import Role, inputs

@@ -6,17 +6,14 @@ from dataclasses import field
 from itertools import pairwise
 from math import nan
 from numbers import Real
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
-from clutchwork.base.classes import dataclass
+from clutchwork.base import dataclass
 from clutchwork.declare.core import core, number
-from clutchwork.declare.schema import WORDS, specs
-
-if TYPE_CHECKING:
-    from clutchwork.declare.node import Law
-    from clutchwork.declare.schema import Spec
+from clutchwork.declare.node import Law
+from clutchwork.declare.schema import WORDS, Spec, specs
 
 
 @dataclass

@@ -2,10 +2,9 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from collections.abc import Sequence
 
-from clutchwork.base.errors import Problem
-from clutchwork.base.quote import quote
+from clutchwork.base import Problem, quote
 from clutchwork.declare.node import HOUSING, Component, Domain, Node, ThermalNode
 from clutchwork.declare.ports import ports
 from clutchwork.declare.schema import Spec
@@ -16,9 +15,6 @@ from clutchwork.model.numbers import At, is_right, number_problems
 from clutchwork.model.parts import Parts, held_positions, placed, take_apart
 from clutchwork.model.temperatures import temperature_advice
 from clutchwork.model.thermal import Referents, Within, node_kind, port_problems, reference_problems, thermal_problems
-
-if TYPE_CHECKING:
-    from collections.abc import Sequence
 
 
 def part_problems(model: Model, incomplete: Sequence[str] = ()) -> tuple[list[Problem], Parts, list[str]]:

@@ -6,8 +6,7 @@ from collections.abc import Iterator, Mapping
 from itertools import pairwise
 from typing import Any
 
-from clutchwork.base.errors import Problem, near
-from clutchwork.base.quote import listed, quote
+from clutchwork.base import Problem, listed, near, quote
 from clutchwork.declare.options import ONE_GRID, SIMULATION
 from clutchwork.declare.schema import Spec
 from clutchwork.declare.wording import say

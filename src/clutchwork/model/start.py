@@ -6,8 +6,7 @@ from contextlib import suppress
 from math import isfinite
 from typing import TYPE_CHECKING, NamedTuple, TypeAlias
 
-from clutchwork.base.errors import Problem
-from clutchwork.base.quote import quote
+from clutchwork.base import Problem, quote
 from clutchwork.declare.node import Domain
 from clutchwork.declare.rational import MINUS, ONE, ZERO, Echelon, Row, exact, plus, smallest
 from clutchwork.declare.schema import Role, specs

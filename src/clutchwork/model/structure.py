@@ -2,23 +2,21 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import field
+from fractions import Fraction
 from functools import cached_property
 from math import inf, isfinite
 from numbers import Real
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
-from clutchwork.base.classes import dataclass
+from clutchwork.base import dataclass
 from clutchwork.declare.node import Component, Domain, Node
 from clutchwork.declare.ports import coefficients, ports
 from clutchwork.declare.rational import MINUS, ONE, Row, exact, plus
 from clutchwork.declare.schema import Role
 from clutchwork.declare.wording import path_of
 from clutchwork.model.numbers import as_float
-
-if TYPE_CHECKING:
-    from collections.abc import Iterator, Mapping, Sequence
-    from fractions import Fraction
 
 
 class NodePlaces:

@@ -5,19 +5,16 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator, Sequence
 from functools import cache
 from numbers import Real
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
-from clutchwork.base.errors import Problem
-from clutchwork.declare.node import Law, Signal
+from clutchwork.base import Problem
+from clutchwork.declare.node import Component, Law, Signal, ThermalNode
 from clutchwork.declare.schema import Spec, specs
 from clutchwork.declare.wording import path_of
 from clutchwork.model.fields import CHECKS
 from clutchwork.model.numbers import At
 from clutchwork.model.thermal import NODE_FIELDS, node_kind
 from clutchwork.signals.bases.waveform import piece_value
-
-if TYPE_CHECKING:
-    from clutchwork.declare.node import Component, ThermalNode
 
 # no lining and no oil works below this [K]
 COLDEST = 150.0

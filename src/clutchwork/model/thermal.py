@@ -5,9 +5,7 @@ from __future__ import annotations
 from collections.abc import Collection, Iterator, Mapping, Sequence
 from typing import Any
 
-from clutchwork.base.classes import dataclass
-from clutchwork.base.errors import Problem, near
-from clutchwork.base.quote import listed, quote
+from clutchwork.base import Problem, dataclass, listed, near, quote
 from clutchwork.declare import units
 from clutchwork.declare.node import (
     DIRECT,

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any, NamedTuple
 
-from clutchwork.base.errors import Problem
+from clutchwork.base import Problem
 from clutchwork.declare.rational import Row, exact, plus
 from clutchwork.declare.schema import Role
 from clutchwork.declare.wording import path_of

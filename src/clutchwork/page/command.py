@@ -7,8 +7,7 @@ import warnings
 from pathlib import Path
 from typing import Any
 
-from clutchwork.base import shell
-from clutchwork.base.errors import ModelWarning
+from clutchwork.base import ModelWarning, shell
 from clutchwork.base.writing import put
 from clutchwork.declare.wording import words_of_files
 

@@ -4,14 +4,13 @@ from __future__ import annotations
 
 import warnings
 from base64 import b64encode
-from collections.abc import Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from typing import TYPE_CHECKING, Any
 
 from clutchwork.assembly.wiring import Wiring, wiring
-from clutchwork.base.classes import dataclass
+from clutchwork.base import ModelError, dataclass
 from clutchwork.declare.core import core
 from clutchwork.declare.layout import CAUSES, MODES, STATUS
-from clutchwork.page.copied import paths
 from clutchwork.page.knots import Dragged, chosen, refuse_controllers, roomy, with_tables
 from clutchwork.page.left_out import absent
 from clutchwork.page.levers import levers
@@ -24,14 +23,17 @@ from clutchwork.page.sliders import names_of, sliders
 from clutchwork.page.static import PageError
 from clutchwork.results.channels import Channels, channels
 from clutchwork.results.forms import Slip
+from clutchwork.signals.table import Table
 
 if TYPE_CHECKING:
     from clutchwork.assembly.system import System
     from clutchwork.declare.options import Options
+    from clutchwork.page.slider import Slider
 
 # steps after which a run of a page stops: it must end before the next picture
 MOST_STEPS = 30_000
 FORMAT = 1
+Path = tuple[str | int, ...]
 
 
 @dataclass(frozen=True)
@@ -163,3 +165,51 @@ def _live(system: System, known: Channels, wires: Wiring) -> dict[str, Any] | No
 
 def _model(made: System) -> dict[str, Any] | None:
     return dict(made.model) or None
+
+
+def paths(system: System, dragged: list[Dragged], turned: list[Slider]) -> dict[str, list[list[str | int]]]:
+    """Places in the plain data of the model by name; nothing where they are not found."""
+    found = dict[str, list[list[str | int]]]()
+    for one in dragged:
+        beside = [(x, y + 1.0) for x, y in one.points]
+        found[one.name] = _ends(system, {one.name: Table(beside)}, "points")
+    for other in turned:
+        for name, start in zip(other.names, other.starts, strict=True):
+            values = (value for value in other.values.tolist() if value != start)
+            found[name] = _moved(system, name, values)
+    return found
+
+
+def _moved(system: System, name: str, values: Iterable[float]) -> list[list[str | int]]:
+    """Paths at which the first value that is not refused is put."""
+    for value in values:
+        places = [list(path) for path in _differ(system.model, _changed(system, {name: value}))]
+        if places:
+            return places
+    return []
+
+
+def _ends(system: System, changes: dict[str, Any], field: str) -> list[list[str | int]]:
+    """Paths up to a field inside of which something changes."""
+    cut = [path[: path.index(field) + 1] for path in _differ(system.model, _changed(system, changes)) if field in path]
+    return [list(path) for path in dict.fromkeys(cut)]
+
+
+def _changed(system: System, changes: dict[str, Any]) -> Any:
+    try:
+        return system.changed(changes).model
+    except ModelError:
+        return system.model
+
+
+def _differ(one: Any, other: Any, path: Path = ()) -> Iterator[Path]:
+    """Paths of the values in which two sets of plain data differ, those that only the second one has among them."""
+    if isinstance(other, Mapping):
+        known = one if isinstance(one, Mapping) else {}
+        for key, value in other.items():
+            yield from _differ(known.get(key), value, (*path, key))
+    elif isinstance(one, list) and isinstance(other, list) and len(one) == len(other):
+        for number, (a, b) in enumerate(zip(one, other, strict=True)):
+            yield from _differ(a, b, (*path, number))
+    elif one != other:
+        yield path

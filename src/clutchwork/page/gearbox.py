@@ -7,7 +7,7 @@ from math import isfinite
 from pathlib import Path
 from typing import Any
 
-from clutchwork.base.errors import ClutchworkError
+from clutchwork.base import ClutchworkError
 from clutchwork.base.paths import fitting
 from clutchwork.base.writing import put
 from clutchwork.diagrams.draw import diagram

@@ -13,8 +13,7 @@ import numpy as np
 
 from clutchwork.assembly.provenance import parameter
 from clutchwork.assembly.records import frozen
-from clutchwork.base.classes import dataclass
-from clutchwork.base.errors import UseError, near
+from clutchwork.base import UseError, dataclass, near
 from clutchwork.declare.node import Signal
 from clutchwork.declare.schema import Role
 from clutchwork.model.changes import SIGNALS, all_names, field_of, named, target, unit_of

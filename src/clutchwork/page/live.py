@@ -2,22 +2,18 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Collection, Iterator, Sequence
 from html import escape
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
-from clutchwork.base.classes import dataclass
+from clutchwork.base import dataclass
+from clutchwork.model.model import Model
 from clutchwork.schematic.cells import SymbolCell
 from clutchwork.schematic.diagram import SymbolGraph, Thing, diagram
 from clutchwork.schematic.look import OPEN, STATES
 from clutchwork.schematic.moment import Snapshot
 from clutchwork.schematic.pen import Mark, Stroke, Text
 from clutchwork.schematic.sheet import DOT, Sheet, sheet
-
-if TYPE_CHECKING:
-    from collections.abc import Collection
-
-    from clutchwork.model.model import Model
 
 POINTS, MARGIN = 72.0 / 25.4, 8.0
 DASHES = {"dash": "3.2 1.8", "dot": "1.2 1.4"}

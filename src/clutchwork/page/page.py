@@ -7,9 +7,8 @@ from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from clutchwork.base.errors import ModelWarning, UseError
+from clutchwork.base import ModelWarning, UseError, quote
 from clutchwork.base.paths import path_fault
-from clutchwork.base.quote import quote
 from clutchwork.base.writing import put
 from clutchwork.page.data import PageRequest, data_of
 from clutchwork.page.html import html

@@ -10,8 +10,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
-from clutchwork.base.classes import dataclass
-from clutchwork.base.errors import UseError
+from clutchwork.base import UseError, dataclass
 from clutchwork.page.slider import Bytes, Numbers, Slider, Words, packed
 from clutchwork.page.together import dependent, made, refused, words_of
 

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from clutchwork.base.errors import UseError
+from clutchwork.base import UseError
 from clutchwork.declare.schema import Spec, common_ends
 from clutchwork.model.changes import Target, all_names, field_of, in_si, named, target, targets_of, unit_of
 from clutchwork.page.slider import Bytes, Slider, Words, start_of

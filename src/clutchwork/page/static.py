@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from clutchwork.base.errors import ClutchworkError
+from clutchwork.base import ClutchworkError
 
 FOLDER = Path(__file__).parent / "static"
 CORE, SCRIPT, GEARBOX, WIDGET, STYLE = "core.wasm", "page.js", "gearbox.js", "widget.js", "page.css"

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from clutchwork.base.errors import ModelError
+from clutchwork.base import ModelError
 from clutchwork.page.slider import Bytes, Slider, Words
 
 if TYPE_CHECKING:

@@ -7,10 +7,8 @@ from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from clutchwork.base.classes import dataclass
-from clutchwork.base.errors import UnknownName, UseError, near
+from clutchwork.base import UnknownName, UseError, dataclass, listed, near, quote
 from clutchwork.base.paths import path_fault
-from clutchwork.base.quote import listed, quote
 from clutchwork.declare.wording import where_signals
 from clutchwork.plot.panels import busy, driven
 from clutchwork.plot.style import MILLIMETRE, NARROWEST, WIDTH, WIDTHS

@@ -6,8 +6,7 @@ from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from clutchwork.base.errors import UseError, near
-from clutchwork.base.quote import quote
+from clutchwork.base import UseError, near, quote
 from clutchwork.declare.calls import explained
 from clutchwork.plot import named
 from clutchwork.plot.chosen import PICTURES, PanelRequest, asked, panels, usual, wide

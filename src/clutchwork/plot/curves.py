@@ -9,9 +9,8 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
-from clutchwork.base.classes import dataclass
-from clutchwork.base.errors import UseError
-from clutchwork.base.quote import listed, quote
+from clutchwork.base import UseError, dataclass, listed, quote
+from clutchwork.base.arrays import Array
 from clutchwork.declare.layout import MODES
 from clutchwork.plot.panels import SCALES
 from clutchwork.results.units import Converter, among
@@ -19,7 +18,6 @@ from clutchwork.results.units import Converter, among
 if TYPE_CHECKING:
     from clutchwork.results.recorded import Recorded
 
-Array = NDArray[np.float64]
 
 # what is measured in a unit, where a panel shows several quantities
 WORDS = {

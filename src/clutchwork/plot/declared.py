@@ -6,8 +6,7 @@ from collections.abc import Callable, Sequence
 from numbers import Real
 from typing import TYPE_CHECKING, Any
 
-from clutchwork.base import html
-from clutchwork.base.errors import ClutchworkError
+from clutchwork.base import ClutchworkError, html
 from clutchwork.declare.docs import described
 from clutchwork.declare.schema import specs
 
@@ -17,10 +16,7 @@ if TYPE_CHECKING:
 
 def parts(thing: Any, draw: Callable[[], Picture | None]) -> tuple[Picture | None, list[str]]:
     """Curve and parameters; no curve without matplotlib, or where a parameter is wrong or cannot be drawn."""
-    tables = [
-        html.heading(type(thing).__name__),
-        html.table(("parameter", "value", "unit", "meaning"), _lines(thing)),
-    ]
+    tables = [html.heading(type(thing).__name__), html.table(("parameter", "value", "unit", "meaning"), _lines(thing))]
     try:
         wrong = [html.paragraph(" ".join(problem)) for problem in thing.problems()]
         return (None if wrong else draw()), [*tables, *wrong]

@@ -8,12 +8,12 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from clutchwork.base.errors import UseError
+from clutchwork.base import UseError, quote
+from clutchwork.base.arrays import Array
 from clutchwork.base.extras import need
-from clutchwork.base.quote import quote
 from clutchwork.base.writing import replaced
 from clutchwork.plot.chosen import PAGES, PanelRequest, PlotArguments, asked, panels, usual_groups
-from clutchwork.plot.curves import WORDS, Array, Curve, Panel, Side, panels_of, thinned, units_of
+from clutchwork.plot.curves import WORDS, Curve, Panel, Side, panels_of, thinned, units_of
 from clutchwork.plot.measured import samples, with_samples
 from clutchwork.plot.named import curve_looks
 from clutchwork.plot.style import DASHES

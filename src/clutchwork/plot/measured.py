@@ -8,8 +8,7 @@ from typing import TYPE_CHECKING, Any, TypeAlias
 import numpy as np
 from numpy.typing import NDArray
 
-from clutchwork.base.errors import FileError, UseError
-from clutchwork.base.quote import quote
+from clutchwork.base import FileError, UseError, quote
 from clutchwork.declare.node import Signal
 from clutchwork.plot.curves import Curve
 

@@ -4,10 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
-from clutchwork.base import html
-from clutchwork.base.errors import UseError
-from clutchwork.base.plural import counted
-from clutchwork.base.quote import quote
+from clutchwork.base import UseError, counted, html, quote
 from clutchwork.plot import named
 from clutchwork.plot.chosen import PICTURES, PanelRequest, PlotArguments, asked, panels, usual_groups, wide
 from clutchwork.plot.curves import panels_of, units_of

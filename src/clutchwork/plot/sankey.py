@@ -92,10 +92,7 @@ def _ribbon(axes: Any, path: Path) -> None:
     codes = [Outline.MOVETO, *[Outline.CURVE4] * (len(upper) - 1), Outline.LINETO, *[Outline.CURVE4] * (len(lower) - 1)]
     axes.add_patch(
         PathPatch(
-            Outline([*upper, *lower, upper[0]], [*codes, Outline.CLOSEPOLY]),
-            facecolor=WORK,
-            alpha=SHADE,
-            linewidth=0,
+            Outline([*upper, *lower, upper[0]], [*codes, Outline.CLOSEPOLY]), facecolor=WORK, alpha=SHADE, linewidth=0
         )
     )
     (x0, y0), (x1, y1) = points[0], points[1]

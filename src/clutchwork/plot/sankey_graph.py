@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections import Counter, defaultdict, deque
 from collections.abc import Callable
 
-from clutchwork.base.classes import dataclass
+from clutchwork.base import dataclass
 from clutchwork.results.losses import LossTable
 
 # ribbons below this part of the largest box are not drawn
@@ -152,7 +152,7 @@ def _order(
     loads = [ribbon.start for ribbon in ribbons if ribbon.end == last and joints[ribbon.start] == 1]
 
     def cost(one: list[str]) -> float:
-        places = _numbered(one)
+        places = {name: number for number, name in enumerate(one)}
         back = sum(abs(energy) for start, end, energy in sent if places[start] > places[end])
         if first in places and last in places:
             back += largest * (places[first] > places[last])
@@ -198,10 +198,6 @@ def _greedy(order: list[str], sent: list[tuple[str, str, float]]) -> list[str]:
             left.append(chosen)
             rest.remove(chosen)
     return [*left, *right]
-
-
-def _numbered(order: list[str]) -> dict[str, int]:
-    return {name: number for number, name in enumerate(order)}
 
 
 def _sent(ribbons: list[Ribbon], first: str | None, boxes: dict[str, Box]) -> float:

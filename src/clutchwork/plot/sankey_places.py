@@ -6,7 +6,7 @@ from collections import defaultdict
 from collections.abc import Iterable
 from itertools import pairwise
 
-from clutchwork.base.classes import dataclass
+from clutchwork.base import dataclass
 from clutchwork.plot.sankey_graph import Graph, Ribbon
 
 BAR = 2.6  # width of a box

@@ -5,8 +5,8 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from numpy.typing import NDArray
 
+from clutchwork.base.arrays import Array
 from clutchwork.plot import declared
 from clutchwork.plot.curves import thinned
 from clutchwork.plot.figure import figure_of
@@ -17,7 +17,6 @@ if TYPE_CHECKING:
     from clutchwork.declare.node import Segment, Signal
     from clutchwork.plot.canvas import Picture
 
-Array = NDArray[np.float64]
 
 SIZE = (130.0, 45.0)  # mm
 PERIODS, FINE = 3.0, 400

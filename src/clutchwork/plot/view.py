@@ -9,9 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from clutchwork.base.classes import dataclass
-from clutchwork.base.errors import UseError
-from clutchwork.base.quote import quote
+from clutchwork.base import UseError, dataclass, quote
 from clutchwork.declare.quantity import QuantityError, in_si
 from clutchwork.results.events import Event, Events
 

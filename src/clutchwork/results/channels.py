@@ -18,10 +18,8 @@ from numpy.typing import NDArray
 
 from clutchwork.assembly.shared_states import state_scales
 from clutchwork.assembly.wiring import HOUSING, Branch, GearRow, Wiring, wiring
-from clutchwork.base.classes import dataclass
-from clutchwork.base.errors import UnknownName, near
+from clutchwork.base import UnknownName, dataclass, near, quote
 from clutchwork.base.memoize import memoize
-from clutchwork.base.quote import quote
 from clutchwork.declare.node import Component, Domain, Work
 from clutchwork.declare.ports import directions
 from clutchwork.declare.wording import where_signals

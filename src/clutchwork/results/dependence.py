@@ -2,15 +2,11 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
 from clutchwork.assembly.dependence import dependent_sets
 from clutchwork.assembly.sparse import entries
-from clutchwork.base.classes import dataclass
+from clutchwork.base import dataclass
 from clutchwork.results.locked_intervals import stretches
-
-if TYPE_CHECKING:
-    from clutchwork.results.recorded import Recorded
+from clutchwork.results.recorded import Recorded
 
 
 @dataclass(frozen=True)

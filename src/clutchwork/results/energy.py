@@ -19,10 +19,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from clutchwork.assembly.wiring import Branch, Wiring
-from clutchwork.base import html
-from clutchwork.base.classes import dataclass
+from clutchwork.base import columns, dataclass, html
 from clutchwork.base.extras import need
-from clutchwork.base.plural import columns
 from clutchwork.declare.calls import explained_methods
 from clutchwork.declare.node import Component, Work
 from clutchwork.results.events import Events

@@ -9,12 +9,9 @@ from typing import TYPE_CHECKING, Any, overload
 import numpy as np
 from numpy.typing import NDArray
 
-from clutchwork.base.classes import dataclass
-from clutchwork.base.errors import UnknownName, near
+from clutchwork.base import UnknownName, columns, dataclass, listed, near, quote
 from clutchwork.base.memoize import memoize
 from clutchwork.base.paths import fitting
-from clutchwork.base.plural import columns
-from clutchwork.base.quote import listed, quote
 from clutchwork.declare.calls import explained, explained_methods
 from clutchwork.declare.layout import CAUSES, EVENT, MODES
 from clutchwork.declare.node import Domain
@@ -36,6 +33,7 @@ UNITS = {
     "energy_after": "J",
 }
 ON_MASSES = {"rad/s2": "m/s2", "N m": "N"}
+COLUMNS = [name for name, _ in EVENT]
 
 
 @dataclass(frozen=True)
@@ -201,7 +199,7 @@ class Events(Sequence[Event]):
 
         names, units = [item.name for item in fields(Event)], self.units
         heads = [f"{name} [{units[name]}]" if name in units else name for name in names]
-        lines = ([_exact(value) for value in astuple(event)] for event in self)
+        lines = ([repr(value) if isinstance(value, float) else value for value in astuple(event)] for event in self)
         put_csv(fitting("run.events.to_csv", path, "events.csv", [".csv"]), [heads, *lines])
 
 
@@ -213,28 +211,18 @@ def contact_domains(system: System) -> dict[str, Domain]:
 
 def from_rows(rows: NDArray[np.float64], contacts: Mapping[str, Domain]) -> Events:
     """Name the numbers of the core."""
-    at = {name: column for column, (name, _) in enumerate(EVENT)}
     # contacts that change in one instant stand in their own order
-    order = np.lexsort((rows[:, at["contact"]], rows[:, at["time"]]))
+    order = np.lexsort((rows[:, COLUMNS.index("contact")], rows[:, COLUMNS.index("time")]))
     names = [*contacts]
-    return Events([_event(rows[i], at, names) for i in order], contacts)
+    return Events([_event(dict(zip(COLUMNS, row, strict=True)), names) for row in rows[order].tolist()], contacts)
 
 
-def _event(row: NDArray[np.float64], at: dict[str, int], contacts: Sequence[str]) -> Event:
-    contact, cause = int(row[at["contact"]]), int(row[at["cause"]])
+def _event(numbers: dict[str, float], contacts: Sequence[str]) -> Event:
+    contact, before, after, cause = (int(numbers.pop(name)) for name in ("contact", "from", "to", "cause"))
     return Event(
-        time=float(row[at["time"]]),
         element=contacts[contact] if 0 <= contact < len(contacts) else "",
-        before=MODES.get(int(row[at["from"]]), "open"),
-        after=MODES.get(int(row[at["to"]]), "open"),
+        before=MODES.get(before, "open"),
+        after=MODES.get(after, "open"),
         cause=CAUSES[cause][0],
-        slip_acceleration=float(row[at["slip_acceleration"]]),
-        torque_before=float(row[at["torque_before"]]),
-        torque_after=float(row[at["torque_after"]]),
-        energy_before=float(row[at["energy_before"]]),
-        energy_after=float(row[at["energy_after"]]),
+        **numbers,
     )
-
-
-def _exact(value: object) -> object:
-    return repr(value) if isinstance(value, float) else value

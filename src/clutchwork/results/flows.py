@@ -12,13 +12,11 @@ from numbers import Real
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from clutchwork.assembly.wiring import HOUSING, Branch, GearRow, Wiring
-from clutchwork.base.classes import dataclass
-from clutchwork.base.errors import OptionError, UseError
+from clutchwork.base import OptionError, UseError, dataclass, quote
+from clutchwork.base.arrays import Array
 from clutchwork.base.memoize import memoize
-from clutchwork.base.quote import quote
 from clutchwork.declare.quantity import QuantityError, has_unit, in_si
 from clutchwork.results import reactions
 from clutchwork.results.channels import LOCKED
@@ -28,7 +26,6 @@ from clutchwork.results.events import Events
 if TYPE_CHECKING:
     from clutchwork.results.recorded import Recorded
 
-Array = NDArray[np.float64]
 
 # Gauss points on [0, 1], as in run/power.hpp
 POINTS = np.array([0.06943184420297371, 0.33000947820757187, 0.6699905217924281, 0.9305681557970263])

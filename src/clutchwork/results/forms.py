@@ -12,8 +12,8 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from clutchwork.base import dataclass
 from clutchwork.base.c_literal import literal
-from clutchwork.base.classes import dataclass
 from clutchwork.declare.layout import MODES
 
 Array = NDArray[Any]

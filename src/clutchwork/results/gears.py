@@ -8,12 +8,8 @@ from typing import TYPE_CHECKING, Any, overload
 
 import numpy as np
 
-from clutchwork.base import html
-from clutchwork.base.classes import dataclass
-from clutchwork.base.errors import UnknownName, near
+from clutchwork.base import UnknownName, columns, dataclass, html, listed, near, quote
 from clutchwork.base.extras import need
-from clutchwork.base.plural import columns
-from clutchwork.base.quote import listed, quote
 from clutchwork.results.channels import LOCKED
 from clutchwork.results.locked_intervals import in_full
 

@@ -2,25 +2,17 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import field
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
-from clutchwork.base import html
-from clutchwork.base.classes import dataclass
-from clutchwork.base.errors import ClutchworkError, UnknownName, near
+from clutchwork.base import ClutchworkError, UnknownName, columns, counted, dataclass, html, listed, near, quote
+from clutchwork.base.arrays import Array
 from clutchwork.base.extras import need
-from clutchwork.base.plural import columns, counted
-from clutchwork.base.quote import listed, quote
 from clutchwork.declare.calls import explained_methods
 
-if TYPE_CHECKING:
-    from collections.abc import Iterator
-
-Array = NDArray[np.float64]
 # columns of a table for the terminal, and of one for a notebook
 MOST_SHOWN = 6
 

@@ -5,23 +5,17 @@ from __future__ import annotations
 from collections import defaultdict
 from collections.abc import Callable, Iterator, Mapping
 from functools import cache
-from typing import TYPE_CHECKING, Any, TypeVar
+from typing import Any, TypeVar
 
-from clutchwork.base import html
-from clutchwork.base.classes import dataclass
-from clutchwork.base.errors import UnknownName, near
+from clutchwork.assembly.wiring import Wiring
+from clutchwork.base import UnknownName, columns, dataclass, html, near, quote
 from clutchwork.base.extras import need
-from clutchwork.base.plural import columns
-from clutchwork.base.quote import quote
 from clutchwork.declare.calls import explained_methods
 from clutchwork.declare.node import Component, Domain, Work
+from clutchwork.results.energy import EnergyBalance
 from clutchwork.results.flows import Flows
 from clutchwork.results.ratios import input_and_output
-
-if TYPE_CHECKING:
-    from clutchwork.assembly.wiring import Wiring
-    from clutchwork.results.energy import EnergyBalance
-    from clutchwork.results.recorded import Recorded
+from clutchwork.results.recorded import Recorded
 
 # below this part of the turnover a line of zeros is left out of a printed table
 NOTHING = 1e-9

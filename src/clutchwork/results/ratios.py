@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from clutchwork.assembly.wiring import HOUSING, Wiring, wiring
-from clutchwork.base.classes import dataclass
+from clutchwork.base import dataclass
 from clutchwork.declare.node import Work
 from clutchwork.results.gears import rows_of
 from clutchwork.results.locked_intervals import stretches

@@ -7,10 +7,10 @@ from dataclasses import field
 from functools import cached_property
 from typing import TYPE_CHECKING, Any
 
-import numpy as np
 from numpy.typing import NDArray
 
-from clutchwork.base.classes import dataclass
+from clutchwork.base import dataclass
+from clutchwork.base.arrays import Array
 from clutchwork.declare.calls import explained_methods
 from clutchwork.declare.layout import DONE, STATUSES
 from clutchwork.declare.options import Options
@@ -22,8 +22,6 @@ if TYPE_CHECKING:
     from clutchwork.assembly.system import System
     from clutchwork.assembly.wiring import Wiring
     from clutchwork.results.channels import Channels
-
-Array = NDArray[np.float64]
 
 
 @explained_methods("run")

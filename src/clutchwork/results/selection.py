@@ -7,8 +7,7 @@ from collections.abc import Callable, Collection, Iterable
 from fnmatch import translate
 from typing import Any
 
-from clutchwork.base.errors import UnknownName, UseError
-from clutchwork.base.quote import quote
+from clutchwork.base import UnknownName, UseError, quote
 
 
 def chosen(wanted: Any, known: Iterable[str], fault: Callable[[str], str], call: str = "names") -> tuple[str, ...]:

@@ -11,11 +11,10 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
-from clutchwork.base.classes import dataclass
-from clutchwork.base.errors import ClutchworkError, UseError
+from clutchwork.base import ClutchworkError, UseError, dataclass, quote
 from clutchwork.base.memoize import memoize
 from clutchwork.base.paths import fitting, path_of
-from clutchwork.base.quote import quote, shortened
+from clutchwork.base.quote import shortened
 from clutchwork.base.regular import reason
 from clutchwork.declare.calls import explained, explained_methods
 from clutchwork.declare.quantity import QuantityError, has_unit, in_si

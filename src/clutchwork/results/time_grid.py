@@ -6,17 +6,14 @@ import math
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from numpy.typing import NDArray
 
-from clutchwork.base.errors import OptionError
-from clutchwork.base.quote import quote
+from clutchwork.base import OptionError, quote
+from clutchwork.base.arrays import Array
 from clutchwork.declare.options import MOST_COUNTED, MOST_ROWS, ONE_GRID, Options, instants
 from clutchwork.declare.units import split
 
 if TYPE_CHECKING:
     from clutchwork.results.recorded import Recorded
-
-Array = NDArray[np.float64]
 
 
 def uniform(dt: float, begin: float, t_end: float) -> Array:

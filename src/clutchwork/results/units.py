@@ -6,9 +6,7 @@ from collections.abc import Iterable, Mapping
 from fnmatch import fnmatchcase
 from typing import TYPE_CHECKING, Any
 
-from clutchwork.base.classes import dataclass
-from clutchwork.base.errors import UnknownName, UseError, advised, near
-from clutchwork.base.quote import listed, quote
+from clutchwork.base import UnknownName, UseError, advised, dataclass, listed, near, quote
 from clutchwork.declare.quantity import PLAIN, QuantityError, scale_to_si
 from clutchwork.declare.unit_table import fitting
 from clutchwork.declare.units import Scale

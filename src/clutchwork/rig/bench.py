@@ -7,10 +7,9 @@ from numbers import Real
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
-from clutchwork.base.classes import dataclass
-from clutchwork.base.errors import ModelWarning
+from clutchwork.base import ModelWarning, dataclass
+from clutchwork.base.arrays import Array
 from clutchwork.declare.node import Domain, Law, Node, SignalLike
 from clutchwork.declare.options import Options
 from clutchwork.driveline.driveline import Driveline
@@ -20,8 +19,6 @@ from clutchwork.elements.torque import Torque
 from clutchwork.rig.presets import Preset
 from clutchwork.run.failure import StoppedEarly
 from clutchwork.run.trajectory import Trajectory
-
-Array = NDArray[np.float64]
 
 # tight, because creep of 1e-9 m is to be seen beside sliding of 0.1 m
 ACCURATE = Options(rtol=1e-8, atol=1e-12)

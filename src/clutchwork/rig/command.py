@@ -8,9 +8,7 @@ from dataclasses import fields
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from clutchwork.base import shell
-from clutchwork.base.classes import dataclass
-from clutchwork.base.errors import UseError, near
+from clutchwork.base import UseError, dataclass, near, shell
 from clutchwork.base.shell import DONE, STOPPED
 
 if TYPE_CHECKING:

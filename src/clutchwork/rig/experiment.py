@@ -2,20 +2,18 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import fields
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, ClassVar, TypeVar
+from typing import TYPE_CHECKING, Any, ClassVar, TypeAlias, TypeVar
 
-from clutchwork.base.classes import dataclass
-from clutchwork.base.errors import near
+from clutchwork.base import dataclass, near
 from clutchwork.base.paths import fitting
 from clutchwork.declare.node import Law
 from clutchwork.declare.options import Options
 from clutchwork.plot.chosen import PICTURES
 from clutchwork.plot.figure import figure_of
 from clutchwork.rig.bench import ACCURATE, Bench
-from clutchwork.rig.chosen import Laws, chosen
 from clutchwork.rig.presets import Preset, preset_of
 from clutchwork.rig.table import Cell, Table, TableColumn
 from clutchwork.rig.trial import NOT_REACHED, Runs, Trial, found
@@ -23,6 +21,10 @@ from clutchwork.run.trajectory import Trajectory
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
+
+
+# names, instances or both; with a mapping the keys are the labels
+Laws: TypeAlias = "str | Law | Iterable[str | Law] | Mapping[str, str | Law] | None"
 
 
 @dataclass(frozen=True)
@@ -85,7 +87,7 @@ class Result:
 
     @property
     def laws(self) -> dict[str, Law]:
-        """The laws by label."""
+        """The laws that an experiment compares, by label."""
         return {label: trial.bench.law for label, trial in self.trials.items()}
 
     @property
@@ -153,11 +155,7 @@ def runner(name: str) -> Callable[..., Result]:
     cls = EXPERIMENTS[name]
 
     def perform(
-        laws: Laws = None,
-        *,
-        preset: str | Preset | None = None,
-        options: Options = ACCURATE,
-        **changes: Any,
+        laws: Laws = None, *, preset: str | Preset | None = None, options: Options = ACCURATE, **changes: Any
     ) -> Result:
         return made(name, changes).perform(laws, preset=preset, options=options)
 
@@ -176,3 +174,51 @@ def made(name: str, changes: Mapping[str, Any]) -> Experiment:
             rest = f"known settings: {', '.join(known)}"
             raise ValueError(f"{name} has no setting {field!r}{near(field, known, rest)}")
     return EXPERIMENTS[name](**changes)
+
+
+def chosen(laws: Laws, preset: Preset, usual: tuple[str, ...]) -> dict[str, Law]:
+    """The laws by label.
+
+    Parameters: laws, a name, a law, several of them, a mapping from labels to them, "all", or None for the usual
+    ones. Case and underscores of names do not matter. ValueError for a name that is unknown, with a near match.
+    """
+    if laws is None:
+        return {kind: preset.law(kind) for kind in usual if kind in preset.laws}
+    if isinstance(laws, Mapping):
+        return {label: _law(wanted, preset) for label, wanted in laws.items()}
+    wishes = [laws] if isinstance(laws, str | Law) else list(laws)
+    if wishes == ["all"]:
+        wishes = [kind for kind in preset.laws if kind != "naive_sign"]
+    made: dict[str, Law] = {}
+    for wanted in wishes:
+        law = _law(wanted, preset)
+        made[_label(law, made)] = law
+    if not made:
+        raise ValueError("no friction law is given: name at least one, or leave the choice to the experiment")
+    return made
+
+
+def kind_of(name: str, preset: Preset) -> str:
+    """The kind that a name means; ValueError with a near match when there is none."""
+    known = {_plain(kind): kind for kind in preset.laws}
+    if _plain(name) not in known:
+        hint = near(name.strip().lower(), preset.laws, f"known laws: {', '.join(preset.laws)}")
+        raise ValueError(f"unknown friction law {name!r}{hint}")
+    return known[_plain(name)]
+
+
+def _law(wanted: Any, preset: Preset) -> Law:
+    if isinstance(wanted, str):
+        return preset.law(kind_of(wanted, preset))
+    if not isinstance(wanted, Law):
+        raise TypeError(f"{wanted!r} is not a friction law: give a name or a law such as clutchwork.Coulomb(...)")
+    return wanted
+
+
+def _label(law: Law, taken: Mapping[str, Law]) -> str:
+    kind: str = getattr(law, "kind", type(law).__name__)
+    return kind if kind not in taken else f"{kind} {sum(label.startswith(kind) for label in taken) + 1}"
+
+
+def _plain(name: str) -> str:
+    return "".join(letter for letter in name.lower() if letter not in "_- ")

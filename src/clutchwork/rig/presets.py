@@ -6,8 +6,7 @@ from functools import cached_property
 from math import exp
 from typing import Any
 
-from clutchwork.base.classes import dataclass
-from clutchwork.base.errors import near
+from clutchwork.base import dataclass, near
 from clutchwork.declare.node import Domain, Law
 from clutchwork.declare.schema import REGISTRY, Role, specs
 
@@ -79,12 +78,7 @@ class Preset:
         stack = tuple((deflection * self.length, share) for deflection, share in self.elements)
         return {
             "coulomb": {"static": self.static, "kinetic": self.kinetic},
-            "exponential": {
-                "static": self.static,
-                "slow": self.static,
-                "fast": self.kinetic,
-                "speed": self.speed,
-            },
+            "exponential": {"static": self.static, "slow": self.static, "fast": self.kinetic, "speed": self.speed},
             "coefficient_table": {"static": self.static, "kinetic": self._points()},
             "stribeck": curve,
             "karnopp": {**curve, "band": 0.1 * self.speed},

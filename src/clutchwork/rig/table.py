@@ -7,10 +7,8 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import Any, TypeAlias
 
-from clutchwork.base.classes import dataclass
-from clutchwork.base.errors import near
+from clutchwork.base import columns, dataclass, near
 from clutchwork.base.paths import fitting
-from clutchwork.base.plural import columns
 from clutchwork.base.writing import put_csv
 
 Cell: TypeAlias = "float | str"

@@ -5,8 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import TypeVar
 
-from clutchwork.base.classes import dataclass
-from clutchwork.base.errors import near
+from clutchwork.base import dataclass, near
 from clutchwork.rig.bench import Bench
 from clutchwork.rig.presets import Preset
 from clutchwork.run.trajectory import Trajectory

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from clutchwork.base.quote import quote
+from clutchwork.base import quote
 from clutchwork.declare.core import core
 from clutchwork.declare.layout import DONE, EVENTS_FULL, ROWS_FULL
 from clutchwork.declare.options import Options
@@ -56,17 +56,15 @@ def put(run: Any, system: System, state: State) -> None:
 
 def choose(run: Any, options: Options) -> None:
     """Give a run its options; what was done before it began does not count against its budgets."""
-    before = run.statistics()
-    for name, value in options.core_options().items():
-        run.set_option(name, value + sum(before[counter] for counter in BUDGETS.get(name, ())))
+    before, values = run.statistics(), options.core_options()
+    for name, counters in BUDGETS.items():
+        values[name] += sum(before[counter] for counter in counters)
+    for name, value in values.items():
+        run.set_option(name, value)
 
 
 def state_of(
-    run: Any,
-    system: System,
-    outside: tuple[Held, Mapping[str, Any]],
-    row: bytes | None = None,
-    left: bytes = b"",
+    run: Any, system: System, outside: tuple[Held, Mapping[str, Any]], row: bytes | None = None, left: bytes = b""
 ) -> State:
     """The State of a run whose events were taken.
 

@@ -7,8 +7,7 @@ from collections.abc import Callable, Container, Iterator, Mapping, Sequence
 from dataclasses import field
 from typing import TYPE_CHECKING, Any
 
-from clutchwork.base.classes import dataclass
-from clutchwork.base.errors import FMUError
+from clutchwork.base import FMUError, dataclass
 from clutchwork.run.trajectory import SimulationError
 
 if TYPE_CHECKING:

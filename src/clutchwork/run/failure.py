@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from clutchwork.base.errors import caller
+from clutchwork.base import caller
 from clutchwork.declare.layout import REFUSALS, STATUS
 from clutchwork.declare.schema import Role, specs
 from clutchwork.model.parts import is_stop

@@ -7,8 +7,7 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import NDArray
 
-from clutchwork.base.errors import OptionError
-from clutchwork.base.quote import quote
+from clutchwork.base import OptionError, quote
 from clutchwork.declare.options import Options, instants
 from clutchwork.results.time_grid import uniform
 

@@ -10,7 +10,7 @@ from typing import Any, NamedTuple, Protocol
 
 import numpy as np
 
-from clutchwork.base.classes import dataclass
+from clutchwork.base import dataclass
 from clutchwork.results.external_settings import Held, held_of, plain_held, plain_value, value_of
 
 # by place, of a table its segments

@@ -7,14 +7,13 @@ from time import perf_counter
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from numpy.typing import NDArray
 
+from clutchwork.base.arrays import Array
 from clutchwork.declare.layout import DONE, EVENT, EVENTS_FULL, INTERRUPTED, ROWS_FULL
 
 if TYPE_CHECKING:
     from clutchwork.run.input_schedule import Schedule
 
-Array = NDArray[np.float64]
 Progress = Callable[[float, float], None]
 Told = Callable[[float], None]
 

@@ -12,10 +12,8 @@ import numpy as np
 
 from clutchwork.assembly.system import PARTS
 from clutchwork.assembly.wiring import wiring
-from clutchwork.base import archive
-from clutchwork.base.errors import ClutchworkError, ModelError, ModelWarning
+from clutchwork.base import ClutchworkError, ModelError, ModelWarning, archive, counted
 from clutchwork.base.extras import program
-from clutchwork.base.plural import counted
 from clutchwork.declare.options import OPTIONS
 from clutchwork.model.settings import plain_settings
 from clutchwork.results.channels import Channels

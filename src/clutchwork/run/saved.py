@@ -11,16 +11,14 @@ from pathlib import Path
 from typing import Any, NoReturn
 
 import numpy as np
-from numpy.typing import NDArray
 
 from clutchwork.assembly.system import System, SystemFormatError
 from clutchwork.assembly.wiring import wiring
-from clutchwork.base import archive
-from clutchwork.base.classes import dataclass
-from clutchwork.base.errors import ClutchworkError, ModelWarning
+from clutchwork.base import ClutchworkError, ModelWarning, archive, dataclass, listed
+from clutchwork.base.arrays import Array
 from clutchwork.base.extras import program
 from clutchwork.base.paths import path_of
-from clutchwork.base.quote import listed, shortened
+from clutchwork.base.quote import shortened
 from clutchwork.base.regular import reason
 from clutchwork.declare.calls import explained
 from clutchwork.declare.layout import MODES, STATUSES
@@ -34,9 +32,6 @@ from clutchwork.run.input_schedule import Schedule, Tape
 from clutchwork.run.save import FORMAT, MOST_BYTES, RUN_PARTS, RunFormatError
 from clutchwork.run.simulation import Job
 from clutchwork.run.trajectory import Trajectory
-
-Array = NDArray[np.float64]
-
 
 # read before the rows, whose size follows from them
 NAMED = tuple(name for name in RUN_PARTS if name not in ("run", "rows"))

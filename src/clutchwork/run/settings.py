@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING, Any
 
-from clutchwork.base.errors import OptionError
+from clutchwork.base import OptionError
 from clutchwork.declare.options import DEFAULTS, Options, end_time, known
 from clutchwork.declare.wording import say
 

@@ -12,12 +12,10 @@ from functools import partial
 from typing import TYPE_CHECKING, Any, Protocol, Unpack
 
 import numpy as np
-from numpy.typing import NDArray
 
 from clutchwork.assembly.system import System
-from clutchwork.base.classes import dataclass
-from clutchwork.base.errors import OptionError, UseError, caller
-from clutchwork.base.quote import quote
+from clutchwork.base import OptionError, UseError, caller, dataclass, quote
+from clutchwork.base.arrays import Array
 from clutchwork.declare.calls import explained
 from clutchwork.declare.layout import DONE, INTERRUPTED, NOT_FINITE, REFUSED, STATUSES
 from clutchwork.declare.options import Options, instants
@@ -35,8 +33,6 @@ if TYPE_CHECKING:
     from clutchwork.results.channels import Channels
     from clutchwork.results.state import State
     from clutchwork.run.input_schedule import Schedule
-
-Array = NDArray[np.float64]
 
 
 class Assembles(Protocol):

@@ -9,9 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 from numpy.typing import NDArray
 
-from clutchwork.base.classes import dataclass
-from clutchwork.base.errors import ClutchworkError, OptionError
-from clutchwork.base.plural import counted
+from clutchwork.base import ClutchworkError, OptionError, counted, dataclass
 from clutchwork.base.verbs import do
 from clutchwork.declare.calls import explained, explained_methods
 from clutchwork.results.events import Events

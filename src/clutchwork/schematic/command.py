@@ -7,8 +7,7 @@ import warnings
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from clutchwork.base import shell
-from clutchwork.base.errors import ModelError, ModelWarning
+from clutchwork.base import ModelError, ModelWarning, shell
 from clutchwork.declare.quantity import seconds
 from clutchwork.declare.wording import words_of_files
 

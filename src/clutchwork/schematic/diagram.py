@@ -7,7 +7,7 @@ from dataclasses import field
 from numbers import Real
 from typing import Any, NamedTuple
 
-from clutchwork.base.classes import dataclass
+from clutchwork.base import dataclass
 from clutchwork.base.quote import printable, shortened
 from clutchwork.declare.node import Component, HeatFlow, Node, Rate, SupplyPower, ThermalNode
 from clutchwork.declare.schema import Role, inputs, specs

@@ -7,9 +7,8 @@ from numbers import Real
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from clutchwork.base.errors import UseError
+from clutchwork.base import UseError, quote
 from clutchwork.base.paths import path_fault
-from clutchwork.base.quote import quote
 from clutchwork.declare.quantity import QuantityError, in_si
 from clutchwork.model.model import Model
 from clutchwork.schematic.diagram import diagram

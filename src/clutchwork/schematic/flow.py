@@ -10,7 +10,7 @@ from typing import Any
 
 import numpy as np
 
-from clutchwork.base.classes import dataclass
+from clutchwork.base import dataclass
 from clutchwork.declare.schema import Role
 from clutchwork.schematic.diagram import Thing, first_oil_port
 from clutchwork.schematic.symbols.symbol import LEFT, RIGHT

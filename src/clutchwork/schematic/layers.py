@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from clutchwork.base.classes import dataclass
+from clutchwork.base import dataclass
 from clutchwork.base.extras import need
 from clutchwork.schematic.cells import Cell
 from clutchwork.schematic.diagram import Thing

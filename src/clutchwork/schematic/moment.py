@@ -3,20 +3,18 @@
 from __future__ import annotations
 
 from functools import cached_property
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
-from clutchwork.base.classes import dataclass
+from clutchwork.base import dataclass
 from clutchwork.declare.schema import Role
 from clutchwork.results.forms import LOCKED as LOCKED_MODE
 from clutchwork.results.gears import NEUTRAL, gears_of
+from clutchwork.results.recorded import Recorded
 from clutchwork.schematic.diagram import Thing
 from clutchwork.schematic.look import LOCKED, OPEN, SLIPPING
 from clutchwork.schematic.values import number
-
-if TYPE_CHECKING:
-    from clutchwork.results.recorded import Recorded
 
 NOTHING = 1e-9  # in SI units: what rounding leaves of zero
 

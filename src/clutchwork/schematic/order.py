@@ -7,7 +7,7 @@ from itertools import pairwise
 
 import numpy as np
 
-from clutchwork.base.classes import dataclass
+from clutchwork.base import dataclass
 from clutchwork.schematic.layers import End, Layers
 
 ROUNDS = 8

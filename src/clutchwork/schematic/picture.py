@@ -9,10 +9,9 @@ from io import BytesIO
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from clutchwork.base.errors import UseError
+from clutchwork.base import UseError, quote
 from clutchwork.base.extras import need
 from clutchwork.base.paths import fitting
-from clutchwork.base.quote import quote
 from clutchwork.base.writing import put
 from clutchwork.declare.calls import explained_methods
 from clutchwork.plot.style import RC

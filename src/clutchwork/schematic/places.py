@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from clutchwork.base.classes import dataclass
+from clutchwork.base import dataclass
 from clutchwork.schematic.layers import End, Layers, NodeLines, linear_program
 from clutchwork.schematic.pen import Point
 

@@ -4,12 +4,12 @@ from __future__ import annotations
 
 from dataclasses import field
 from itertools import pairwise
+from math import ceil
 
-from clutchwork.base.classes import dataclass
+from clutchwork.base import dataclass
 from clutchwork.schematic.cells import SymbolCell, cell_of, line_of
 from clutchwork.schematic.diagram import SymbolGraph, Thing
 from clutchwork.schematic.flow import flow
-from clutchwork.schematic.folds import WIDE, folds
 from clutchwork.schematic.layers import Layers, layered
 from clutchwork.schematic.look import MarkStyle
 from clutchwork.schematic.moment import Snapshot
@@ -19,6 +19,28 @@ from clutchwork.schematic.places import Coordinates, placed
 
 APART, WIDEST, BEND = 20.0, 520.0, 10.0  # pt between parts, and of a row of small ones
 DOT = 1.7
+WIDE = 880.0  # pt
+
+
+def folds(layers: Layers, places: Coordinates, width: float = WIDE) -> list[int]:
+    """First layers of the second row and those behind; none where all fits, or nothing can be cut."""
+    first, last = places.x[0], places.x[-1]
+    count = ceil((last - first) / width) if width > 0.0 else 1
+    can = [layer for layer in range(2, layers.count - 1) if _single(layers, layer)]
+    cuts = list[int]()
+    for number in range(1, count):
+        wanted = first + (last - first) * number / count
+        free = [layer for layer in can if layer > (cuts[-1] + 1 if cuts else 1)]
+        if not free:
+            break
+        cuts.append(min(free, key=lambda layer: abs(0.5 * (places.x[layer - 1] + places.x[layer]) - wanted)))
+    return cuts
+
+
+def _single(layers: Layers, layer: int) -> bool:
+    """Whether only one line goes into a layer."""
+    lines = [one for one in layers.lines if one.layer == layer - 1]
+    return len(lines) == 1 and len(lines[0].left) == len(lines[0].right) == 1
 
 
 @dataclass(frozen=True, eq=False)

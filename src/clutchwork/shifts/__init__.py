@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import Any
 
-from clutchwork.base.errors import near
+from clutchwork.base import near
 from clutchwork.shifts.actuators import ElementActuator, Learnt
 from clutchwork.shifts.comfort import jerk, vibration_dose
 from clutchwork.shifts.controller import ShiftController

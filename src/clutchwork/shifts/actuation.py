@@ -6,7 +6,7 @@ from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
-from clutchwork.base.quote import listed
+from clutchwork.base import listed
 from clutchwork.shifts.driver import ActuatorDriver
 from clutchwork.shifts.exchange import FRICTION, SLEEVES
 

@@ -2,15 +2,13 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from functools import cached_property
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 
-from clutchwork.base.classes import dataclass
-
-if TYPE_CHECKING:
-    from collections.abc import Sequence
+from clutchwork.base import dataclass
 
 
 class Learnt(NamedTuple):

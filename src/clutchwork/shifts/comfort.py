@@ -3,12 +3,10 @@
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import NDArray
 
-from clutchwork.base.errors import UseError
+from clutchwork.base import UseError
+from clutchwork.base.arrays import Array
 from clutchwork.results.felt import WINDOW, felt_jerk
-
-Array = NDArray[np.float64]
 
 # weighting for horizontal vibration of seated people, Wd of ISO 2631-1: limits, transition [Hz] and its quality
 LOW, HIGH, TRANSITION, QUALITY = 0.4, 100.0, 2.0, 0.63

@@ -6,9 +6,9 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, ClassVar
 
-from clutchwork.base.errors import UseError, expect
+from clutchwork.base import UseError, listed, quote
+from clutchwork.base.errors import expect
 from clutchwork.base.frozen import Frozen
-from clutchwork.base.quote import listed, quote
 from clutchwork.declare.calls import explain
 from clutchwork.gearbox.gearbox import Gearbox
 from clutchwork.shifts.actuation import Actuation

@@ -4,19 +4,15 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from itertools import pairwise
-from typing import TYPE_CHECKING
 
 import numpy as np
+from numpy.typing import NDArray
 
-from clutchwork.base.classes import dataclass
+from clutchwork.base import dataclass
+from clutchwork.gearbox.gearbox import Gearbox
+from clutchwork.results.recorded import Recorded
 from clutchwork.shifts.gears import InGear, gears_of
 from clutchwork.shifts.record import NEUTRAL
-
-if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
-    from clutchwork.gearbox.gearbox import Gearbox
-    from clutchwork.results.recorded import Recorded
 
 # torque that counts as none, as a share of the largest one
 NOTHING = 0.02

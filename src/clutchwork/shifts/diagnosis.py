@@ -9,7 +9,8 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
-from clutchwork.base.classes import dataclass
+from clutchwork.base import dataclass
+from clutchwork.base.arrays import Array
 from clutchwork.shifts.comfort import jerk
 from clutchwork.shifts.record import NEUTRAL, Finding
 
@@ -18,7 +19,6 @@ if TYPE_CHECKING:
     from clutchwork.shifts.metrics import ShiftQuality
     from clutchwork.shifts.record import ShiftRecord
 
-Array = NDArray[np.float64]
 STEP = 1e-3  # s
 # from which on something is worth to be said: rad/s, share of the torque of an element, of that of the output
 RUN_AWAY, AGAINST, STEPS, RINGS = 5.0, 0.05, 0.2, 0.1

@@ -5,20 +5,17 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping, Sequence
 from math import inf, isfinite
 from numbers import Real
-from typing import TYPE_CHECKING, SupportsFloat
+from typing import SupportsFloat
 
-from clutchwork.base.classes import dataclass
-from clutchwork.base.errors import UseError, expect
-from clutchwork.base.quote import quote
+from clutchwork.base import UseError, dataclass, quote
+from clutchwork.base.errors import expect
 from clutchwork.declare.calls import explained
+from clutchwork.run.trajectory import Trajectory
 from clutchwork.shifts.controller import ShiftController
 from clutchwork.shifts.hybrid import HybridController
 from clutchwork.shifts.record import Measured
 from clutchwork.shifts.torque_sources import Source, TorqueShare
 from clutchwork.stepping.simulator import Simulator
-
-if TYPE_CHECKING:
-    from clutchwork.run.trajectory import Trajectory
 
 Controller = ShiftController | HybridController
 # what else is set at a time [s]: values by signal

@@ -2,20 +2,14 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from functools import lru_cache
 from itertools import pairwise, product
-from typing import TYPE_CHECKING
 
-from clutchwork.base.classes import dataclass
-from clutchwork.base.errors import UseError
-from clutchwork.base.quote import listed
+from clutchwork.base import UseError, dataclass, listed
+from clutchwork.gearbox.gearbox import Gearbox
 from clutchwork.gearbox.motion import speeds
-
-if TYPE_CHECKING:
-    from collections.abc import Mapping
-
-    from clutchwork.gearbox.gearbox import Gearbox
-    from clutchwork.gearbox.state import GearState
+from clutchwork.gearbox.state import GearState
 
 # kinds that slip with a torque, and those that engage by teeth
 FRICTION, SLEEVES = ("clutch", "brake"), ("dog", "synchroniser")

@@ -6,9 +6,8 @@ from collections.abc import Iterator
 from math import isnan
 from pathlib import Path
 
-from clutchwork.base.classes import dataclass
+from clutchwork.base import columns, dataclass
 from clutchwork.base.paths import fitting
-from clutchwork.base.plural import columns
 from clutchwork.base.writing import put
 
 HEADS = (

@@ -8,8 +8,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from clutchwork.base.errors import UseError
-from clutchwork.base.quote import listed, quote
+from clutchwork.base import UseError, listed, quote
 from clutchwork.gearbox.motion import GEAR, NEUTRAL, OUTPUT_HELD, TIE_UP
 from clutchwork.shifts.comfort import low_pass
 from clutchwork.shifts.fault_results import Fault, FaultResult, FaultTable

@@ -3,25 +3,22 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
+from clutchwork.assembly.system import System
 from clutchwork.assembly.wiring import wiring
-from clutchwork.base.errors import UseError
-from clutchwork.base.quote import listed
+from clutchwork.base import UseError, listed
 from clutchwork.declare import Component
 from clutchwork.declare.schema import specs
 from clutchwork.elements.pressure_actuator import PressureActuator
 from clutchwork.elements.pressure_valve import PressureValve
 from clutchwork.elements.spool_valve import SpoolValve
+from clutchwork.gearbox.gearbox import Gearbox
 from clutchwork.shifts.actuators import ElementActuator
 from clutchwork.shifts.driver import TOUCH
 from clutchwork.stepping.simulator import Simulator
-
-if TYPE_CHECKING:
-    from clutchwork.assembly.system import System
-    from clutchwork.gearbox.gearbox import Gearbox
 
 FULL = 1e6  # Pa, of a command that is a pressure
 # s: until a piston is empty, on each step of the stair, behind a pulse, and between two looks

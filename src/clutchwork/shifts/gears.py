@@ -4,18 +4,15 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Sequence
 from itertools import pairwise
-from typing import TYPE_CHECKING
 
 import numpy as np
 
-from clutchwork.base.classes import dataclass
+from clutchwork.base import dataclass
+from clutchwork.gearbox.gearbox import Gearbox
 from clutchwork.results import gears
+from clutchwork.results.gears import GearStretch
+from clutchwork.results.recorded import Recorded
 from clutchwork.shifts.record import NEUTRAL
-
-if TYPE_CHECKING:
-    from clutchwork.gearbox.gearbox import Gearbox
-    from clutchwork.results.gears import GearStretch
-    from clutchwork.results.recorded import Recorded
 
 # a gear that is held for less is passed through [s]
 SHORTEST = 0.3

@@ -2,23 +2,18 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping, Sequence
 from itertools import combinations
-from typing import TYPE_CHECKING
 
 import numpy as np
-from numpy.typing import NDArray
 
-from clutchwork.base.classes import dataclass
+from clutchwork.base import dataclass
+from clutchwork.base.arrays import Array
 from clutchwork.gearbox.gear_set import HOUSING
+from clutchwork.gearbox.gearbox import Gearbox
 from clutchwork.gearbox.motion import speeds
 from clutchwork.shifts.exchange import FRICTION, ratio_of, state_of
 
-if TYPE_CHECKING:
-    from collections.abc import Mapping, Sequence
-
-    from clutchwork.gearbox.gearbox import Gearbox
-
-Array = NDArray[np.float64]
 # torques that miss the wanted ones by less, as a share of these, meet them
 MEETS = 1e-9
 # how far beside the ratios of both gears that of the gear may be which carries on the way, as a share of the larger one

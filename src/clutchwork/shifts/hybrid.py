@@ -9,9 +9,8 @@ from math import inf, isfinite
 from numbers import Real
 from typing import Any
 
-from clutchwork.base.classes import dataclass
-from clutchwork.base.errors import UseError, expect, near
-from clutchwork.base.quote import listed, quote
+from clutchwork.base import UseError, dataclass, listed, near, quote
+from clutchwork.base.errors import expect
 from clutchwork.declare.calls import explain
 from clutchwork.gearbox.gearbox import Gearbox
 from clutchwork.gearbox.motion import SPLIT

@@ -3,22 +3,20 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from clutchwork.base.classes import dataclass
+from clutchwork.base import dataclass
+from clutchwork.base.arrays import Array
+from clutchwork.gearbox.gearbox import Gearbox
 from clutchwork.results.felt import WINDOW
+from clutchwork.results.recorded import Recorded
 from clutchwork.shifts.comfort import jerk, vibration_dose
 from clutchwork.shifts.detect import Shift, shifts_of
 from clutchwork.shifts.record import NEUTRAL
 
-if TYPE_CHECKING:
-    from clutchwork.gearbox.gearbox import Gearbox
-    from clutchwork.results.recorded import Recorded
-
-Array = NDArray[np.float64]
 STEP = 1e-3  # s, of the grid that phases and jerk are looked at on
 # how long a level of the torque is looked at, and how long the element that closes is filled before it carries [s]
 LEVEL, FILLING = 0.2, 0.2

@@ -9,7 +9,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from clutchwork.shifts.handover import Array, allocation
+from clutchwork.base.arrays import Array
+from clutchwork.shifts.handover import allocation
 from clutchwork.shifts.profile import Trend, share_of
 from clutchwork.shifts.record import Finding
 

@@ -3,26 +3,21 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from typing import TYPE_CHECKING
 
 import numpy as np
+from numpy.typing import NDArray
 
+from clutchwork.assembly.system import System
 from clutchwork.assembly.wiring import HOUSING, wiring
-from clutchwork.base.classes import dataclass
-from clutchwork.base.errors import UseError, expect, near
+from clutchwork.base import UseError, dataclass, listed, near, quote
+from clutchwork.base.errors import expect
 from clutchwork.base.frozen import Frozen
-from clutchwork.base.quote import listed, quote
 from clutchwork.declare.calls import explained
 from clutchwork.gearbox.gearbox import Gearbox
 from clutchwork.run.simulation import Assembles, model_of
 from clutchwork.shifts.actuators import ElementActuator
 from clutchwork.shifts.fill_test import FULL, fill_test
 from clutchwork.stepping.simulator import Simulator
-
-if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
-    from clutchwork.assembly.system import System
 
 CALL = "cw.shifts.plant_of"
 # Pa, that stands for an element behind a piston which is filled and carries nothing; 0 lets it go

@@ -9,10 +9,9 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from clutchwork.base.errors import UseError
+from clutchwork.base import UseError, columns
 from clutchwork.base.extras import need
 from clutchwork.base.paths import fitting
-from clutchwork.base.plural import columns
 from clutchwork.base.writing import replaced
 
 if TYPE_CHECKING:

@@ -10,11 +10,9 @@ from math import inf, isfinite, nextafter, pi
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from clutchwork.base.classes import dataclass
-from clutchwork.base.errors import ModelError, Problem, UseError
+from clutchwork.base import ModelError, Problem, UseError, dataclass, listed, quote
 from clutchwork.base.frozen import frozen
 from clutchwork.base.paths import path_of
-from clutchwork.base.quote import listed, quote
 from clutchwork.shifts.lines import Line, at
 
 if TYPE_CHECKING:

@@ -4,17 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from math import inf
-from typing import TYPE_CHECKING
 
 import numpy as np
 
-from clutchwork.base.classes import dataclass
-from clutchwork.base.errors import UseError
-from clutchwork.base.quote import listed
+from clutchwork.base import UseError, dataclass, listed
+from clutchwork.gearbox.gearbox import Gearbox
 from clutchwork.gearbox.motion import speeds
-
-if TYPE_CHECKING:
-    from clutchwork.gearbox.gearbox import Gearbox
 
 Pair = tuple[float, float]
 # of a determinant that is none

@@ -8,7 +8,7 @@ from itertools import pairwise
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from clutchwork.base.classes import dataclass
+from clutchwork.base import dataclass
 from clutchwork.shifts.controller import ShiftController
 from clutchwork.shifts.diagnosis import diagnose, explain
 from clutchwork.shifts.drive import Sensed, drive

@@ -6,9 +6,8 @@ from collections.abc import Callable, Sequence
 from math import exp, inf
 from typing import TYPE_CHECKING, Protocol
 
-from clutchwork.base.classes import dataclass
-from clutchwork.base.errors import UseError, expect
-from clutchwork.base.quote import quote
+from clutchwork.base import UseError, dataclass, quote
+from clutchwork.base.errors import expect
 from clutchwork.elements.engine import Engine
 from clutchwork.shifts.lines import Line, at
 

@@ -7,7 +7,7 @@ from functools import cached_property
 from os.path import join
 from typing import Any
 
-from clutchwork.base.errors import FileError
+from clutchwork.base import FileError
 from clutchwork.declare import Role, Segment, Signal, component, param, text
 from clutchwork.declare.quantity import QuantityError
 from clutchwork.signals.table import pieces

@@ -2,13 +2,10 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from itertools import pairwise
-from typing import TYPE_CHECKING
 
 from clutchwork.declare import Points, Role, Segment, Signal, component, curve
-
-if TYPE_CHECKING:
-    from collections.abc import Iterator
 
 
 @component(Role.SIGNAL)

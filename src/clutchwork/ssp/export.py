@@ -9,9 +9,8 @@ from numbers import Real
 from pathlib import Path
 from typing import Any
 
-from clutchwork.base.errors import FMUError, UseError, near
+from clutchwork.base import FMUError, UseError, near, quote
 from clutchwork.base.paths import fitting, path_of
-from clutchwork.base.quote import quote
 from clutchwork.declare.calls import explained
 from clutchwork.fmu import archive
 from clutchwork.fmu_import.archive import description_of

@@ -5,25 +5,20 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import field, replace
 from functools import cached_property
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from clutchwork.base.classes import dataclass
-from clutchwork.base.errors import UnknownName, UseError, near
+from clutchwork.base import UnknownName, UseError, columns, counted, dataclass, near, quote
 from clutchwork.base.extras import need
-from clutchwork.base.plural import columns, counted
-from clutchwork.base.quote import quote
 from clutchwork.declare.calls import explained, explained_methods
 from clutchwork.model.changes import targets_of
+from clutchwork.model.model import Model
 from clutchwork.studies.distributions import Discrete, Distribution, distribution
 from clutchwork.studies.points import METHODS, Points
 from clutchwork.sweeps.factors import Factors, multiplied
 from clutchwork.sweeps.variants import Variants, Varied
-
-if TYPE_CHECKING:
-    from clutchwork.model.model import Model
 
 # named as users do, to what it is called in a table
 WAYS = ("latin", "sobol", "random", "saltelli")

@@ -11,15 +11,13 @@ from typing import Any, TypeAlias
 import numpy as np
 from numpy.typing import NDArray
 
-from clutchwork.base.classes import dataclass
-from clutchwork.base.errors import UseError
+from clutchwork.base import UseError, dataclass, quote
+from clutchwork.base.arrays import Array
 from clutchwork.base.extras import need
-from clutchwork.base.quote import quote
 from clutchwork.declare.calls import explained
 from clutchwork.declare.units import split
 from clutchwork.sweeps.factors import Factors
 
-Array = NDArray[np.float64]
 InSI: TypeAlias = Callable[[Any], Any]
 
 

@@ -9,12 +9,9 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
-from clutchwork.base import html
-from clutchwork.base.classes import dataclass
-from clutchwork.base.errors import UseError
+from clutchwork.base import UseError, columns, dataclass, html, quote
+from clutchwork.base.arrays import Array
 from clutchwork.base.extras import need
-from clutchwork.base.plural import columns
-from clutchwork.base.quote import quote
 from clutchwork.declare.calls import explained, explained_methods
 from clutchwork.studies.picture import indices
 from clutchwork.studies.points import Saltelli
@@ -24,7 +21,6 @@ from clutchwork.sweeps.result import Sweep
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
-Array = NDArray[np.float64]
 # resampled sets of points that an interval is from
 RESAMPLED = 100
 HEADS = ("name", "first order", "+-", "total", "+-")

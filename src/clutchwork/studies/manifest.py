@@ -11,8 +11,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from clutchwork.assembly.system import System, SystemFormatError
-from clutchwork.base.classes import dataclass
-from clutchwork.base.errors import ClutchworkError
+from clutchwork.base import ClutchworkError, dataclass
 from clutchwork.base.quote import shortened
 from clutchwork.base.writing import put
 from clutchwork.studies.fingerprints import of_model, of_output

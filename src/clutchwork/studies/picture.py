@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
-from clutchwork.base.errors import UseError
+from clutchwork.base import UseError
 from clutchwork.base.paths import fitting
 from clutchwork.plot.chosen import PICTURES
 from clutchwork.plot.figure import figure_of
@@ -19,7 +19,8 @@ if TYPE_CHECKING:
 
     from matplotlib.figure import Figure
 
-    Array = NDArray[np.float64]
+    from clutchwork.base.arrays import Array
+
 
 ROW, BAR, HEAD = 50.0, 7.0, 25.0  # mm
 BINS = 60
@@ -57,10 +58,7 @@ def indices(
     places = np.arange(len(order))
     with figure_of(HEAD + BAR * len(order)) as figure:
         axes = figure.add_subplot()
-        bars = (
-            (0.2, *total, "total", COLOURS[0]),
-            (-0.2, *first, "first order", COLOURS[1]),
-        )
+        bars = ((0.2, *total, "total", COLOURS[0]), (-0.2, *first, "first order", COLOURS[1]))
         for shift, index, width, label, colour in bars:
             lines = {"ecolor": "black", "elinewidth": 0.8}
             axes.barh(places + shift, index[order], 0.38, xerr=width[order], color=colour, label=label, error_kw=lines)

@@ -11,13 +11,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from clutchwork.assembly.system import System, SystemFormatError
-from clutchwork.base import html
-from clutchwork.base.classes import dataclass
-from clutchwork.base.errors import UnknownName, UseError, near
+from clutchwork.base import UnknownName, UseError, columns, dataclass, html, near, quote
 from clutchwork.base.extras import need
 from clutchwork.base.paths import path_of
-from clutchwork.base.plural import columns
-from clutchwork.base.quote import quote
 from clutchwork.declare.calls import explained, explained_methods
 from clutchwork.declare.options import Options
 from clutchwork.results.selection import chosen

@@ -9,11 +9,10 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, Unpack
 
 from clutchwork.assembly.system import System, SystemFormatError
-from clutchwork.base.errors import ModelWarning, UseError, caller
+from clutchwork.base import ModelWarning, UseError, caller, quote
 from clutchwork.base.paths import folder as made_folder
 from clutchwork.base.paths import path_of
 from clutchwork.base.progress import followed
-from clutchwork.base.quote import quote
 from clutchwork.declare.calls import explained
 from clutchwork.declare.options import Options
 from clutchwork.executors.choice import executor

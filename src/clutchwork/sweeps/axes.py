@@ -18,7 +18,7 @@ import numpy as np
 from clutchwork.assembly.changes import UNKNOWN_SOURCE
 from clutchwork.assembly.patches import PLAIN, Unpatched, patches
 from clutchwork.assembly.provenance import is_shared, parameter
-from clutchwork.base.errors import ModelError, Problem
+from clutchwork.base import ModelError, Problem
 from clutchwork.declare.layout import FIELDS
 from clutchwork.declare.node import Component, Law, Signal, ThermalNode
 from clutchwork.declare.quantity import has_unit

@@ -12,8 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from clutchwork.assembly.wiring import row_columns
-from clutchwork.base.errors import UseError, near
-from clutchwork.base.quote import listed
+from clutchwork.base import UseError, listed, near
 from clutchwork.declare.core import core
 from clutchwork.declare.layout import DONE, INTERRUPTED
 from clutchwork.results.channels import Channels, channels

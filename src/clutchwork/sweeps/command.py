@@ -28,12 +28,7 @@ CODES = "Exit code 1: a variant stopped early, 130: interrupted; what was asked 
 def add_command(subparsers: Any) -> None:
     """Add `sweep` to the commands of the command line."""
     parser = shell.add_command(
-        subparsers,
-        "sweep",
-        sweep_command,
-        "run a model with many sets of values",
-        examples=EXAMPLES,
-        codes=CODES,
+        subparsers, "sweep", sweep_command, "run a model with many sets of values", examples=EXAMPLES, codes=CODES
     )
     shell.add_model(parser)
     parser.add_argument(

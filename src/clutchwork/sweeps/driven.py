@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 from clutchwork.assembly.inputs import plain_signal
 from clutchwork.assembly.patches import Numbered, Patch, signal_patches
-from clutchwork.base.errors import ModelError, Problem
+from clutchwork.base import ModelError, Problem
 from clutchwork.declare.node import Component, Signal
 from clutchwork.declare.schema import Spec, specs
 from clutchwork.declare.to_si import settled

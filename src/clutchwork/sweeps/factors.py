@@ -7,15 +7,12 @@ from dataclasses import dataclass
 from fnmatch import fnmatchcase
 from math import isfinite
 from numbers import Real
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
-from clutchwork.base.errors import ModelError, UseError, near
-from clutchwork.base.quote import quote
+from clutchwork.base import ModelError, UseError, near, quote
 from clutchwork.declare.calls import explained
 from clutchwork.model.changes import all_names, field_of, named, target, targets_of
-
-if TYPE_CHECKING:
-    from clutchwork.model.model import Model
+from clutchwork.model.model import Model
 
 
 @dataclass(frozen=True)

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable
 from dataclasses import replace
 
-from clutchwork.base.errors import Problem
+from clutchwork.base import Problem
 
 # so many mistakes of a sweep are named
 MOST_PROBLEMS = 20

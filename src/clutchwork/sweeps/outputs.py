@@ -12,8 +12,7 @@ from typing import TYPE_CHECKING, Any, TypeAlias
 import numpy as np
 from numpy.typing import NDArray
 
-from clutchwork.base.errors import UseError
-from clutchwork.base.quote import quote
+from clutchwork.base import UseError, quote
 from clutchwork.declare.calls import explained
 from clutchwork.declare.options import instants
 from clutchwork.results.felt import WINDOW, felt_jerk

@@ -8,8 +8,9 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from clutchwork.base.arrays import Places
+
 Array = NDArray[Any]
-Places = NDArray[np.intp]
 
 # rows in every step of the solver, the last one at its end
 PARTS = 4

@@ -5,13 +5,12 @@ from __future__ import annotations
 import argparse
 import re
 import sys
-from typing import TYPE_CHECKING, Any
+from collections.abc import Iterator
+from typing import Any
 
 import numpy as np
 
-from clutchwork.base import shell
-from clutchwork.base.errors import UseError, near
-from clutchwork.base.plural import columns, counted
+from clutchwork.base import UseError, columns, counted, near, shell
 from clutchwork.base.shell import DONE, INTERRUPTED, STOPPED
 from clutchwork.declare.options import instants
 from clutchwork.declare.units import split
@@ -23,9 +22,6 @@ from clutchwork.sweeps.asking import CALLS, FORMS, KNOWN
 from clutchwork.sweeps.factors import times
 from clutchwork.sweeps.result import Sweep, SweepInterrupted
 from clutchwork.sweeps.sweep import sweep
-
-if TYPE_CHECKING:
-    from collections.abc import Iterator
 
 WRITERS = {".parquet": Sweep.to_parquet, ".csv": Sweep.to_csv}
 

@@ -3,28 +3,21 @@
 from __future__ import annotations
 
 import os
+from collections.abc import Mapping
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 from clutchwork.assembly.system import System
-from clutchwork.base.errors import ModelError, UseError
-from clutchwork.base.quote import quote
+from clutchwork.base import ModelError, UseError, quote
 from clutchwork.declare.options import Options
 from clutchwork.run.settings import merged, refuse_endless
-from clutchwork.run.simulation import refuse_fixed
+from clutchwork.run.simulation import Assembles, refuse_fixed
 from clutchwork.sweeps.asking import ROWS
 from clutchwork.sweeps.axes import Plan
 from clutchwork.sweeps.mistakes import few
-from clutchwork.sweeps.outputs import asked
+from clutchwork.sweeps.outputs import Output, asked
 from clutchwork.sweeps.result import Swept
-from clutchwork.sweeps.variants import Variants, given
-
-if TYPE_CHECKING:
-    from collections.abc import Mapping
-
-    from clutchwork.run.simulation import Assembles
-    from clutchwork.sweeps.outputs import Output
-    from clutchwork.sweeps.variants import VariantSource
+from clutchwork.sweeps.variants import Variants, VariantSource, given
 
 # so many values of a name are all looked at before the first run
 MOST_LOOKED_AT = 64

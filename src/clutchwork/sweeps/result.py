@@ -11,11 +11,9 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from clutchwork.base.errors import ModelError, UnknownName, UseError, near
+from clutchwork.base import ModelError, UnknownName, UseError, counted, near, quote
 from clutchwork.base.extras import need
 from clutchwork.base.paths import fitting
-from clutchwork.base.plural import counted
-from clutchwork.base.quote import quote
 from clutchwork.base.writing import put_csv, replaced
 from clutchwork.declare.calls import explained, explained_methods
 from clutchwork.declare.layout import DONE, INTERRUPTED, STATUSES

@@ -2,25 +2,21 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from functools import partial
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
-from clutchwork.base.quote import quote
+from clutchwork.base import quote
 from clutchwork.declare.layout import INTERRUPTED
 from clutchwork.declare.node import Signal
 from clutchwork.run.control import controllers
+from clutchwork.run.trajectory import Trajectory
 from clutchwork.sweeps.axes import Plan
 from clutchwork.sweeps.batch import Batch, CoreOutputs, RunSetup
 from clutchwork.sweeps.outputs import Computed, Output
 from clutchwork.sweeps.result import Missing, Sweep, SweepInterrupted, Swept
-
-if TYPE_CHECKING:
-    from collections.abc import Mapping
-
-    from clutchwork.run.trajectory import Trajectory
 
 Shown = Callable[[int], None]
 

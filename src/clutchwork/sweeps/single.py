@@ -3,17 +3,14 @@
 from __future__ import annotations
 
 import warnings
-from typing import TYPE_CHECKING, Any
+from collections.abc import Mapping
+from typing import Any
 
+from clutchwork.assembly.system import System
+from clutchwork.declare.options import Options
 from clutchwork.run.failure import FaultWarning, StoppedEarly
 from clutchwork.run.simulation import simulate
-
-if TYPE_CHECKING:
-    from collections.abc import Mapping
-
-    from clutchwork.assembly.system import System
-    from clutchwork.declare.options import Options
-    from clutchwork.run.trajectory import Trajectory
+from clutchwork.run.trajectory import Trajectory
 
 
 def single(system: System, values: Mapping[str, Any], t_end: float, options: Options) -> Trajectory:

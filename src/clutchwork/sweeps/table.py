@@ -2,10 +2,9 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import TYPE_CHECKING, NamedTuple
 
-from clutchwork.base import html
-from clutchwork.base.plural import columns, counted
+from clutchwork.base import columns, counted, html
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
@@ -44,8 +43,4 @@ class Shown(NamedTuple):
     def _table(self, head: str) -> tuple[list[str], list[list[str]]]:
         heads = [head.format(name, self.units[name]) if name in self.units else name for name in self.columns]
         lines = zip(*(column[:MOST_SHOWN].tolist() for column in self.columns.values()), strict=True)
-        return heads, [[_cell(cell) for cell in line] for line in lines]
-
-
-def _cell(value: Any) -> str:
-    return f"{value:.6g}" if isinstance(value, float) else str(value)
+        return heads, [[f"{cell:.6g}" if isinstance(cell, float) else str(cell) for cell in line] for line in lines]

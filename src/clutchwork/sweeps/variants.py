@@ -10,8 +10,7 @@ from typing import Any, Protocol, cast
 import numpy as np
 from numpy.typing import NDArray
 
-from clutchwork.base.errors import UseError
-from clutchwork.base.quote import quote
+from clutchwork.base import UseError, quote
 from clutchwork.declare.calls import explained
 from clutchwork.model import changes
 from clutchwork.model.changes import Target, named, target

@@ -18,7 +18,7 @@ bool may_vary(T p11, T p12, T p22) {
 /// Root of the mobility of the row of a transmission at a ratio where one rate follows from the other, with its sign:
 /// it may pass zero.
 template <class T>
-T root(T p11, T p12, T p22, T ratio) {
+T mobility_root(T p11, T p12, T p22, T ratio) {
   auto size = [](T p) { return value(p) > 0 ? sqrt(p) : T(0); };
   return size(p11) - ratio * (value(p12) < 0 ? -size(p22) : size(p22));
 }
@@ -68,7 +68,8 @@ void jump_ratio(Workspace<T>& ws, int a, T ratio) {
   r.value[a] = ratio;
   if (!(value(before) > 0) || !(value(after) > 0)) return;
   const T to =
-      r2 * (may_vary(p11, p12, p22) ? sqrt(before / after) : root(p11, p12, p22, from) / root(p11, p12, p22, ratio));
+      r2 * (may_vary(p11, p12, p22) ? sqrt(before / after)
+                                    : mobility_root(p11, p12, p22, from) / mobility_root(p11, p12, p22, ratio));
   T j1, j2, *x = ws.decision.speed;
   impulses_for(p11, p12, p22, ratio * to - r1, to - r2, T(0.5) * (ratio * to + r1), T(0.5) * (to + r2), j1, j2);
   for (int i = 0; i < nv; ++i) x[i] = j1 * x1[i] + j2 * x2[i];

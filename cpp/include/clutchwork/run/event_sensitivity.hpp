@@ -305,7 +305,7 @@ void move_to_hit(Form& form, Step<Form>& step, const Hit& hit) {
   using T = typename Form::Scalar;
   // the slope of the interpolant is there already
   T *velocity = step.k(0), *algebraic = step.k(2);
-  if (hit.bends) return;
+  if (hit.held_bends) return;
   motion_now(form, step.y0(), algebraic, velocity);
   GuardList::visit(hit.what, [&](auto tag) {
     using G = typename decltype(tag)::type;

@@ -7,13 +7,13 @@ namespace clutchwork {
 
 /// The first thing that happens inside a step, and of which guard.
 struct Hit {
-  int what = -1;       ///< place of its guard in the list of guards, -1: nothing
-  int index = -1;      ///< guard, locked contact, dependent set, redundant contact, contact, branch, or process
-  double s = 1;        ///< where in the step, 0 to 1
-  int who = -1;        ///< what of a law leaves its piece; the end that a stop meets
-  bool bends = false;  ///< what is held bends there
-  bool rough = false;  ///< the interpolant is elsewhere there
-  int asked = -1;      ///< place of the guard that looks
+  int what = -1;            ///< place of its guard in the list of guards, -1: nothing
+  int index = -1;           ///< guard, locked contact, dependent set, redundant contact, contact, branch, or process
+  double s = 1;             ///< where in the step, 0 to 1
+  int who = -1;             ///< what of a law leaves its piece; the end that a stop meets
+  bool held_bends = false;  ///< what is held bends there
+  bool rough = false;       ///< the interpolant is elsewhere there
+  int asked = -1;           ///< place of the guard that looks
 
   CLUTCHWORK_INLINE bool none() const { return what < 0; }
 
@@ -23,7 +23,7 @@ struct Hit {
   /// What the guard that looks has found at a share of the step, where that is first.
   CLUTCHWORK_INLINE bool take(double at, int found, int leaves = -1) {
     if (!is_after(at)) return false;
-    what = asked, index = found, s = at, who = leaves, bends = rough = false;
+    what = asked, index = found, s = at, who = leaves, held_bends = rough = false;
     return true;
   }
 };

@@ -6,7 +6,7 @@ from collections.abc import Sequence
 from functools import lru_cache
 from math import ceil
 
-from clutchwork.base.classes import dataclass
+from clutchwork.base import dataclass
 from clutchwork.diagrams.letters import width_of
 from clutchwork.diagrams.lever.heights import PITCH, Hung, hung
 from clutchwork.diagrams.lever.points import levers

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from fractions import Fraction
 
-from clutchwork.base.classes import dataclass
+from clutchwork.base import dataclass
 from clutchwork.gearbox.gear_set import HOUSING, GearSet
 
 # short names of ports, at the points of a lever

@@ -10,12 +10,11 @@ from itertools import pairwise
 from math import ceil, floor
 from typing import TYPE_CHECKING
 
-from clutchwork.base.classes import dataclass
+from clutchwork.base import dataclass
 from clutchwork.diagrams.letters import width_of
 from clutchwork.diagrams.lever.points import Lever, levers
 from clutchwork.diagrams.marks import FAINT, GREY, HELD, INK, NAME, POWER, SMALL, Mark, Pen
 from clutchwork.diagrams.shown import shown
-from clutchwork.diagrams.speed.spread import spread
 from clutchwork.diagrams.title import draw_title
 from clutchwork.gearbox.gear_set import HOUSING
 from clutchwork.schematic.pen import around
@@ -134,3 +133,22 @@ def _draw_gears(
             pen.dot(x, y, 2.4, colour)
         pen.line((right + 3.0, points[-1][1]), (right + 10.0, place), colour=colour, width=0.7)
         pen.label(right + 12.0, place + 3.6, gear, NAME, colour if plain else GREY, bold=True, anchor="start")
+
+
+def spread(wanted: Sequence[float], apart: float) -> list[float]:
+    """Places of labels as near to the wanted ones as they may be, no two nearer than `apart`."""
+    order = sorted(range(len(wanted)), key=lambda n: (wanted[n], n))
+    # blocks of places that touch: the sum of wanted tops, and how many
+    blocks: list[list[float]] = []
+    for place, number in enumerate(order):
+        blocks.append([wanted[number] - apart * place, 1.0])
+        while len(blocks) > 1 and blocks[-2][0] / blocks[-2][1] >= blocks[-1][0] / blocks[-1][1]:
+            total, count = blocks.pop()
+            blocks[-1][0] += total
+            blocks[-1][1] += count
+    found, place = [0.0] * len(order), 0
+    for total, count in blocks:
+        for _ in range(int(count)):
+            found[order[place]] = total / count + apart * place
+            place += 1
+    return found

@@ -6,7 +6,7 @@ from collections.abc import Iterable
 from dataclasses import field
 from itertools import pairwise
 
-from clutchwork.base.classes import dataclass
+from clutchwork.base import dataclass
 from clutchwork.diagrams.stick.bodies import Node
 
 Edge = tuple[Node, Node]  # two neighbours, the lesser first

@@ -6,7 +6,7 @@ from collections.abc import Sequence
 from dataclasses import field
 from typing import NamedTuple
 
-from clutchwork.base.classes import dataclass
+from clutchwork.base import dataclass
 from clutchwork.gearbox.gear_set import HOUSING, GearSet
 
 Node = tuple[int, int]  # column from the left, row above the centre line

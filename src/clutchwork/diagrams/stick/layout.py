@@ -6,7 +6,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from functools import lru_cache
 
-from clutchwork.base.classes import dataclass
+from clutchwork.base import dataclass
 from clutchwork.diagrams.stick.board import Edge
 from clutchwork.diagrams.stick.bodies import Body, Node, bodies
 from clutchwork.diagrams.stick.improve import routed

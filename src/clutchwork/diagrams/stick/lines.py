@@ -2,13 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection, Iterator
+from collections.abc import Collection, Iterator, Mapping
 from itertools import pairwise
 
 from clutchwork.diagrams.marks import POWER, Pen, Point
 from clutchwork.diagrams.stick.board import Edge, edge
 from clutchwork.diagrams.stick.bodies import Node
-from clutchwork.diagrams.stick.flow import powers
 from clutchwork.diagrams.stick.looks import LOST, Scene
 
 MESH = 2.4  # px from the pitch of teeth to the line of a wheel
@@ -173,3 +172,34 @@ def _draw_joints(pen: Pen, scene: Scene, member: str, some: set[Edge], flow: dic
             power = max((abs(flow[one]) for one in some if node in one), default=0.0)
             x, y = scene.at(node)
             pen.dot(x, y, DOT + 0.5 * (scene.width(power) - scene.width(0.0)), scene.colour(member, power))
+
+
+def powers(lines: Collection[Edge], taken: Mapping[Node, float]) -> dict[Edge, float]:
+    """Power along each edge, from its lesser to its greater end.
+
+    Parameters: lines, edges of a tree; taken, power that enters at a node.
+    """
+    beside: dict[Node, list[Node]] = {}
+    for a, b in lines:
+        beside.setdefault(a, []).append(b)
+        beside.setdefault(b, []).append(a)
+    found: dict[Edge, float] = {}
+    seen = set[Node]()
+    for root in sorted(beside):
+        if root in seen:
+            continue
+        order, parent = [root], dict[Node, Node]()
+        seen.add(root)
+        for node in order:
+            for other in sorted(beside[node]):
+                if other not in seen:
+                    seen.add(other)
+                    parent[other] = node
+                    order.append(other)
+        total = {node: taken.get(node, 0.0) for node in order}
+        for node in reversed(order[1:]):
+            above = parent[node]
+            total[above] += total[node]
+            one = edge(node, above)
+            found[one] = total[node] if one[0] == node else -total[node]
+    return found

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from clutchwork.base.classes import dataclass
+from clutchwork.base import dataclass
 from clutchwork.diagrams.marks import HELD, IDLE, INK, POWER, Point
 from clutchwork.diagrams.power import INPUT, OUTPUT, sources
 from clutchwork.diagrams.stick.bodies import Node

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from math import hypot
-from typing import TYPE_CHECKING
 
 from clutchwork.diagrams.marks import GREY, HELD, IDLE, INK, NAME, POWER, Pen, Point
 from clutchwork.diagrams.power import sources
@@ -13,10 +12,8 @@ from clutchwork.diagrams.stick.looks import Scene
 from clutchwork.diagrams.stick.route import IN
 from clutchwork.diagrams.stick.search import ShiftSymbol
 from clutchwork.diagrams.stick.wheels import ground
+from clutchwork.gearbox.definition import ShiftElement
 from clutchwork.gearbox.gear_set import HOUSING
-
-if TYPE_CHECKING:
-    from clutchwork.gearbox.definition import ShiftElement
 
 ARROW = 40.0  # px
 LEGEND = ((POWER, "turns with power, as wide as the power"), (HELD, "held"), (IDLE, "turns without power"))

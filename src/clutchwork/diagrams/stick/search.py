@@ -8,7 +8,7 @@ from heapq import heappop, heappush
 from math import inf
 from typing import NamedTuple
 
-from clutchwork.base.classes import dataclass
+from clutchwork.base import dataclass
 from clutchwork.diagrams.stick.board import NEAR, STEPS, Board
 from clutchwork.diagrams.stick.bodies import Node
 

@@ -2,14 +2,10 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
+from clutchwork.declare import Signal, SignalLike
 from clutchwork.elements.bases.geometry import Found
 from clutchwork.signals.constant import Constant
 from clutchwork.signals.step import Step
-
-if TYPE_CHECKING:
-    from clutchwork.declare import Signal, SignalLike
 
 
 def trigger(time: float | None) -> Signal | None:

@@ -2,14 +2,11 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, ClassVar
+from typing import ClassVar
 
-from clutchwork.declare import family
+from clutchwork.declare import Law, family
 from clutchwork.elements.bases.heating import Heating
 from clutchwork.laws.coulomb import Coulomb
-
-if TYPE_CHECKING:
-    from clutchwork.declare import Law
 
 
 @family

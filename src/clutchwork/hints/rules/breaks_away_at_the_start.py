@@ -3,17 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from typing import TYPE_CHECKING
 
 import numpy as np
 
 from clutchwork.hints.hint import Hint, shown
-from clutchwork.hints.look import RowSpan
+from clutchwork.hints.look import Look, RowSpan
 from clutchwork.hints.registry import run_rule
 from clutchwork.results.channels import TORQUE
-
-if TYPE_CHECKING:
-    from clutchwork.hints.look import Look
 
 NAME = "breaks away at the start"
 

@@ -3,17 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from typing import TYPE_CHECKING
 
 import numpy as np
 
 from clutchwork.hints.hint import Hint, more_than, shown
+from clutchwork.hints.look import Look
 from clutchwork.hints.registry import run_rule
 from clutchwork.hints.rules.never_locks import never_locks
 from clutchwork.hints.slipping import FullSlip, full_slips, pressed
-
-if TYPE_CHECKING:
-    from clutchwork.hints.look import Look
 
 NAME = "full and slips"
 # a load that is less than this above the torque is a balance, such as of a car that is held back downhill

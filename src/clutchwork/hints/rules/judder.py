@@ -4,19 +4,17 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from math import log, pi
-from typing import TYPE_CHECKING, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 
+from clutchwork.assembly.wiring import Branch
 from clutchwork.declare.schema import inputs
 from clutchwork.hints.hint import Hint, shown
+from clutchwork.hints.look import Look, RowSpan
 from clutchwork.hints.registry import run_rule
 from clutchwork.model.pools import coefficients
 from clutchwork.results.channels import SPEED, TORQUE
-
-if TYPE_CHECKING:
-    from clutchwork.assembly.wiring import Branch
-    from clutchwork.hints.look import Look, RowSpan
 
 NAME = "judder"
 # growth of a small vibration over a stretch of slipping that is seen

@@ -3,15 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from typing import TYPE_CHECKING
 
 import numpy as np
 
 from clutchwork.hints.hint import Hint
+from clutchwork.hints.look import Look
 from clutchwork.hints.registry import run_rule
-
-if TYPE_CHECKING:
-    from clutchwork.hints.look import Look
 
 NAME = "lifts off"
 

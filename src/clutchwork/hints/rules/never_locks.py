@@ -4,17 +4,14 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from math import inf
-from typing import TYPE_CHECKING
 
 import numpy as np
 
 from clutchwork.assembly.wiring import HOUSING
 from clutchwork.hints.hint import Hint, more_than, shown
+from clutchwork.hints.look import Look
 from clutchwork.hints.registry import run_rule
 from clutchwork.hints.slipping import FullSlip, full_slips, pressed
-
-if TYPE_CHECKING:
-    from clutchwork.hints.look import Look
 
 NAME = "never locks"
 # torque that keeps a slip over that of the clutch, from which it grows; what is equal settles, as on a bench

@@ -3,18 +3,16 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
 from clutchwork.declare.node import Domain
 from clutchwork.declare.schema import specs
 from clutchwork.hints.hint import Hint, shown
+from clutchwork.hints.look import Look
 from clutchwork.hints.registry import run_rule
 from clutchwork.results.channels import SPEED
-
-if TYPE_CHECKING:
-    from clutchwork.hints.look import Look
 
 NAME = "outside its table"
 # share of the range of a table beyond its ends that makes no difference

@@ -4,18 +4,15 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from math import pi, sqrt
-from typing import TYPE_CHECKING, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 
-from clutchwork.assembly.wiring import HOUSING
+from clutchwork.assembly.wiring import HOUSING, Branch
 from clutchwork.hints.hint import Hint, shown
+from clutchwork.hints.look import Look
 from clutchwork.hints.registry import run_rule
 from clutchwork.results.channels import SPEED
-
-if TYPE_CHECKING:
-    from clutchwork.assembly.wiring import Branch
-    from clutchwork.hints.look import Look
 
 NAME = "stiff"
 # a run of fewer steps takes a moment whatever holds them down

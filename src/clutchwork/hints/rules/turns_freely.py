@@ -3,18 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from typing import TYPE_CHECKING
 
 import numpy as np
+from numpy.typing import NDArray
 
 from clutchwork.hints.hint import Hint, shown, together
+from clutchwork.hints.look import Look
 from clutchwork.hints.registry import run_rule
 from clutchwork.results.channels import SPEED
-
-if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
-    from clutchwork.hints.look import Look
 
 NAME = "turns freely"
 # share of a run that is worth a word

@@ -8,14 +8,12 @@ from __future__ import annotations
 import ast
 import re
 import warnings
+from collections.abc import Callable, Collection, Sequence
 from math import inf
-from typing import TYPE_CHECKING, NamedTuple
+from typing import NamedTuple
 
-from clutchwork.base.errors import near
-from clutchwork.base.quote import quote, shortened
-
-if TYPE_CHECKING:
-    from collections.abc import Callable, Collection, Sequence
+from clutchwork.base import near, quote
+from clutchwork.base.quote import shortened
 
 # what an expression may read beside the numbers that it names: the inputs of the law in their order
 SLIP, TEMPERATURE, PRESSURE = "v", "temperature", "pressure"

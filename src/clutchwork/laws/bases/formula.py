@@ -3,29 +3,23 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import MISSING
 from functools import lru_cache
 from keyword import iskeyword
 from numbers import Real
-from typing import TYPE_CHECKING, Any, ClassVar, NamedTuple
+from typing import Any, ClassVar, NamedTuple
 
-from clutchwork.base.classes import dataclass
+from clutchwork.base import dataclass
 from clutchwork.base.errors import nearest
 from clutchwork.declare import Law, SignalLike, family, formula, param, signal, units
 from clutchwork.declare.pints import is_quantity
 from clutchwork.declare.pints import powers_of as powers_of_pint
 from clutchwork.declare.schema import specs
 from clutchwork.laws.bases.dimensions import mistakes_of_units
-from clutchwork.laws.bases.expression import FUNCTIONS, INPUTS, PRESSURE, TEMPERATURE
+from clutchwork.laws.bases.expression import FUNCTIONS, INPUTS, PRESSURE, TEMPERATURE, Mistake
 from clutchwork.laws.bases.jumps import first_jump, where
-from clutchwork.laws.bases.program import OPERATIONS, Program, Texts, compiled
-
-if TYPE_CHECKING:
-    from collections.abc import Iterator, Sequence
-
-    from clutchwork.laws.bases.expression import Mistake
-    from clutchwork.laws.bases.program import Points
+from clutchwork.laws.bases.program import OPERATIONS, Points, Program, Texts, compiled
 
 Found = list[tuple[str, str, str]]
 

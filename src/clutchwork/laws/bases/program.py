@@ -3,16 +3,12 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Callable, Mapping, Sequence
 from functools import lru_cache
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import Any, NamedTuple
 
-from clutchwork.base.plural import counted
-from clutchwork.laws.bases.expression import INPUTS, SLIP, FormulaGraph, Mistake, Reader
-
-if TYPE_CHECKING:
-    from collections.abc import Callable, Mapping, Sequence
-
-    from clutchwork.laws.bases.expression import FormulaNode, Source
+from clutchwork.base import counted
+from clutchwork.laws.bases.expression import INPUTS, SLIP, FormulaGraph, FormulaNode, Mistake, Reader, Source
 
 Points = tuple[tuple[float, float, float], ...]
 

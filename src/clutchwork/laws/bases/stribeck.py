@@ -2,12 +2,7 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
-from clutchwork.declare import Law, choice, family, param
-
-if TYPE_CHECKING:
-    from clutchwork.declare import Points
+from clutchwork.declare import Law, Points, choice, family, param
 
 SHAPES = ("gaussian", "tustin", "lorentz", "power")
 # limits that equal a value may differ from it by round-off

@@ -2,16 +2,11 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from itertools import pairwise
 from math import inf
-from typing import TYPE_CHECKING
 
-from clutchwork.declare import Law, choice, family
-
-if TYPE_CHECKING:
-    from collections.abc import Sequence
-
-    from clutchwork.declare import Points
+from clutchwork.declare import Law, Points, choice, family
 
 # points that each interpolation needs along every axis
 FEWEST = {"linear": 2, "smooth": 3}

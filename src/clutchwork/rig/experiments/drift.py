@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
-from clutchwork.base.classes import dataclass
+from clutchwork.base import dataclass
 from clutchwork.rig.bench import Bench, position
 from clutchwork.rig.experiment import Experiment, Result, experiment
 from clutchwork.rig.looks import head, legend_below, looks, small

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from clutchwork.base.classes import dataclass
+from clutchwork.base import dataclass
 from clutchwork.driveline.driveline import Driveline
 from clutchwork.elements.bearing_friction import BearingFriction
 from clutchwork.elements.prescribed_speed import PrescribedSpeed

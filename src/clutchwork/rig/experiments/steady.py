@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
-from clutchwork.base.classes import dataclass
+from clutchwork.base import dataclass
 from clutchwork.rig.bench import Bench, friction
 from clutchwork.rig.experiment import Experiment, Result, experiment
 from clutchwork.rig.looks import GREY, legend_below, nested

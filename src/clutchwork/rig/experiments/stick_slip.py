@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from clutchwork.base.classes import dataclass
+from clutchwork.base import dataclass
 from clutchwork.driveline.driveline import Driveline
 from clutchwork.elements.bearing_friction import BearingFriction
 from clutchwork.elements.prescribed_speed import PrescribedSpeed
@@ -21,8 +21,6 @@ from clutchwork.rig.trial import NOT_REACHED, Runs, Trial
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
-
-    from clutchwork.run.trajectory import Trajectory
 
 
 @experiment
@@ -89,7 +87,7 @@ class StickSlip(Experiment):
         for label, look in looks(result.runs).items():
             run = result[label]
             thin, late = {**look, "linewidth": 0.9}, run.time >= 0.5 * run.time[-1]
-            pull = _pull(run)
+            pull = -np.asarray(run["spring.torque"], dtype=float)
             force.plot(run.time, pull, **thin)
             plane.plot(pull[late], 1e3 * run["body.speed"][late], **thin)
             zoom.plot(run.time[late], 1e3 * run["friction.slip"][late], **thin)
@@ -105,11 +103,6 @@ class StickSlip(Experiment):
         zoom.set_xlabel("time, s")
         zoom.set_ylabel(f"slip, {speed}")
         legend_below(force)
-
-
-def _pull(run: Trajectory) -> np.ndarray:
-    """Force with which the spring pulls the mass back [N]."""
-    return -np.asarray(run["spring.torque"], dtype=float)
 
 
 def _period(time: np.ndarray, pull: np.ndarray, least: float) -> float:

@@ -6,7 +6,7 @@ from collections.abc import Callable, Mapping
 from dataclasses import field
 from typing import Any
 
-from clutchwork.base.classes import dataclass
+from clutchwork.base import dataclass
 from clutchwork.schematic.look import SHAFT, MarkStyle
 from clutchwork.schematic.pen import SymbolPen
 

@@ -8,8 +8,7 @@ from clutchwork.declare.schema import Role, specs
 from clutchwork.schematic.symbols.contacts import CONTACTS
 from clutchwork.schematic.symbols.gears import GEARS
 from clutchwork.schematic.symbols.heat import FLOW, FLOWS, PROCESS, PROCESSES
-from clutchwork.schematic.symbols.hydraulic import HYDRAULIC
-from clutchwork.schematic.symbols.hydrodynamic import HYDRODYNAMIC
+from clutchwork.schematic.symbols.hydraulic import HYDRAULIC, HYDRODYNAMIC
 from clutchwork.schematic.symbols.meshes import MESHES
 from clutchwork.schematic.symbols.play import PLAY
 from clutchwork.schematic.symbols.ratios import RATIOS

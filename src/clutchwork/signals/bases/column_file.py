@@ -18,11 +18,9 @@ from pathlib import Path
 from typing import BinaryIO
 
 import numpy as np
-from numpy.typing import NDArray
 
-from clutchwork.base.classes import dataclass
-from clutchwork.base.errors import FileError, near
-from clutchwork.base.quote import listed, quote
+from clutchwork.base import FileError, dataclass, listed, near, quote
+from clutchwork.base.arrays import Array
 from clutchwork.base.regular import open_regular, reason
 from clutchwork.declare.quantity import PLAIN, QuantityError
 from clutchwork.declare.units import Scale
@@ -30,8 +28,6 @@ from clutchwork.signals.bases import sheets
 from clutchwork.signals.bases.column_heads import ColumnHead, meant, split
 from clutchwork.signals.bases.semicolons import with_commas
 from clutchwork.signals.bases.sheets import NumericSheet
-
-Array = NDArray[np.float64]
 
 MOST_BYTES = 256_000_000
 MOST_LINES = 2_000_000

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import re
 
-from clutchwork.base.classes import dataclass
+from clutchwork.base import dataclass
 from clutchwork.declare.quantity import PLAIN, QuantityError, scale_to_si
 from clutchwork.declare.units import Scale, other_zero, parse, turns
 

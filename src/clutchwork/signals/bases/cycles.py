@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from clutchwork.base.errors import UseError
+from clutchwork.base import UseError
 from clutchwork.declare.calls import explained
 from clutchwork.signals.table import Table
 

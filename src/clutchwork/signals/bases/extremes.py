@@ -2,16 +2,12 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from math import atan2, ceil, inf, isfinite, pi, sqrt
-from typing import TYPE_CHECKING, NamedTuple
+from typing import NamedTuple
 
+from clutchwork.declare.node import Segment, Signal
 from clutchwork.signals.bases.waveform import piece_value
-
-if TYPE_CHECKING:
-    from collections.abc import Iterator
-
-    from clutchwork.declare.node import Segment, Signal
-
 
 # time constants after which a wave has died away, to some 1e-17 of itself
 SETTLED = 40.0

@@ -9,11 +9,9 @@ from dataclasses import field
 from itertools import chain
 
 import numpy as np
-from numpy.typing import NDArray
 
-from clutchwork.base.classes import dataclass
-
-Array = NDArray[np.float64]
+from clutchwork.base import dataclass
+from clutchwork.base.arrays import Array
 
 # of the text of a file that is kept as numbers
 MOST_BYTES = 1 << 20

@@ -6,7 +6,7 @@ import cmath
 from itertools import chain
 from math import comb, exp, pi, sin
 
-from clutchwork.base.classes import dataclass
+from clutchwork.base import dataclass
 from clutchwork.declare import Segment, Signal
 
 # amplitude, omega, phase, decay

@@ -163,7 +163,7 @@ struct CapacityBend : OwnScale, OfNone {
       const int c = ws.guard.bending[i];
       int who = turned;
       const double s = piece_end(form, step, make_branch(ws, int(ws.sys.elements) + c, forward), -1, hit, who);
-      if (hit.take(s, c, who)) hit.bends = true;
+      if (hit.take(s, c, who)) hit.held_bends = true;
     }
   }
   /// No motion depends on it: it has no derivatives.

@@ -6,8 +6,7 @@ from collections.abc import Callable, Iterator
 from contextlib import AbstractContextManager, contextmanager
 from pathlib import Path
 
-from clutchwork.base.errors import FileError
-from clutchwork.base.quote import quote
+from clutchwork.base import FileError, quote
 from clutchwork.base.regular import open_regular
 from clutchwork.signals.bases.measured.series import Series
 

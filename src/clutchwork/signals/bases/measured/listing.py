@@ -7,11 +7,8 @@ from collections.abc import Iterator, Sequence
 from pathlib import Path
 from typing import overload
 
-from clutchwork.base.classes import dataclass
-from clutchwork.base.errors import FileError
+from clutchwork.base import FileError, columns, dataclass, quote
 from clutchwork.base.paths import path_of
-from clutchwork.base.plural import columns
-from clutchwork.base.quote import quote
 from clutchwork.base.regular import open_regular, reason
 from clutchwork.declare.calls import explained
 from clutchwork.signals.bases.column_file import MOST_BYTES, as_text

@@ -10,7 +10,7 @@ from typing import Any
 
 import numpy as np
 
-from clutchwork.base.classes import dataclass
+from clutchwork.base import dataclass
 from clutchwork.base.extras import need
 from clutchwork.signals.bases.measured.other_units import own_unit
 from clutchwork.signals.bases.measured.series import CLOCKS, Array, Clock, Series, numbers

@@ -7,8 +7,7 @@ from pathlib import Path
 
 import numpy as np
 
-from clutchwork.base.errors import FileError, near
-from clutchwork.base.quote import listed, quote
+from clutchwork.base import FileError, listed, near, quote
 from clutchwork.signals.bases import column_file, sheets
 from clutchwork.signals.bases.column_file import MOST_FAULTS, MOST_LINES, ColumnRequest, ColumnValues
 from clutchwork.signals.bases.column_heads import ColumnHead

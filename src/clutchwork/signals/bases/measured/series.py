@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from clutchwork.base.classes import dataclass
+from clutchwork.base import dataclass
 from clutchwork.signals.bases.column_heads import split
 from clutchwork.signals.bases.measured.other_units import own_unit
 
