@@ -72,8 +72,10 @@ def test_a_gear_at_rest_beside_a_brake_that_holds_it() -> None:
     torques = np.linspace(-0.0299, 0.0299, 200)
     sims = cw.Simulators(d, len(torques), **fixed(1e-3))
     sims["motor.torque"] = torques
+    sims.advance(1e-3)
     for _ in range(20):
         sims.advance(1e-3)
+        assert not sims.events
     assert not sims.failed.any()
     assert np.abs(sims["rotor.speed"]).max() < 1e-12
     assert np.abs(sims["seal.torque"] + torques).max() < 1e-12

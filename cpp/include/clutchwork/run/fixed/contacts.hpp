@@ -146,7 +146,8 @@ inline int mode_behind(const Run& ws, int c, double tolerance) {
     if (abs(slip) > tolerance) return slip > 0 ? forward : backward;
     return ws.contact.loaded[c] ? locked : mode == locked ? open : mode;
   }
-  if (f.side[c] == 0) return locked;
+  // at rest, what a load of round-off holds is no slip
+  if (f.side[c] == 0 || (ws.loads.of[c] >= 0 && abs(slip) <= tolerance)) return locked;
   return f.lower[c] < f.upper[c] ? -f.side[c] : slip > 0 ? forward : backward;
 }
 
