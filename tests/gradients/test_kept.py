@@ -504,3 +504,15 @@ def test_a_torque_that_is_a_rest_of_others() -> None:
     found = derivatives(d, 0.1, ["housing.torque", "s.speed"], "g.ratio")
     assert found.problems == ()
     assert found.matrix == pytest.approx(0.0, abs=1e-9)
+
+
+def test_a_top_between_two_long_steps() -> None:
+    # seed 90036: the torque of a prescribed motion is an acceleration, which long steps know less
+    d = cw.Driveline("top")
+    s = d.shaft("s", inertia=1.12, angle=0.0823)
+    d.add(cw.Torque("drive", shaft=s, torque=-144.0))
+    d.add(cw.Flyweights("w", mass=16.8, radius=0.161, lag=0.194, speed=-80.0))
+    d.add(cw.PrescribedPosition("motion", shaft=d.housing, base=s, position=0.00438, cutoff=9.21))
+    tally = judged(d, 0.0455, [cw.minimum("motion.torque")], ["motion.cutoff"])
+    assert tally.wrong + tally.refused == []
+    assert tally.compared == 1

@@ -33,6 +33,8 @@ LEVEL = 1e-3
 BENT = 1e-3
 # limits from both sides that differ by more are those of a jump, of the larger one
 JUMP = 1e-6
+# what a dense output may miss at a top that several steps do not fit, of its last coefficient
+TOP_MISSES = 0.01
 # from so many steps in a row on they are looked at as one hill
 HILL = 3
 # by how much they may rise the wrong way, of what is allowed and of what they rise in all
@@ -233,7 +235,7 @@ def kinks(primal: Primal, found: list[Located]) -> tuple[float, ...]:
 def add_extreme(primal: Primal, one: Extreme, found: Located, into: Functional) -> tuple[Functional, float] | None:
     """How an extreme changes: the signal at its instant, and that instant where it is that of an event.
 
-    Returns how that instant moves, and by how much the rate of the signal there may miss.
+    Returns what moves with an error, that instant or the last coefficient of a top, and by how much that counts.
     """
     steps, sign = primal.steps, 1.0 if one.kind == "minimum" else found.sign
     end, place = found.begins, (found.step, found.share)
@@ -251,6 +253,10 @@ def add_extreme(primal: Primal, one: Extreme, found: Located, into: Functional) 
         return None
     for step, weights in whole:
         add_signal(primal, one.signal, steps.rows[step], weights, into)
+    if end is None and not found.is_flat and place == (found.step, found.share):
+        moves = primal.functional()
+        add_signal(primal, one.signal, steps.rows[found.step], steps.basis[found.step, PARTS], moves)
+        return moves, TOP_MISSES
     if not inside:
         slopes = steps.left_slope if found.share == 0.0 else steps.right_slope
         rate = float(slopes[found.step] @ signal_at(primal, one.signal, steps.rows[found.step]))
