@@ -15,7 +15,6 @@ from clutchwork.assembly.patches import PLAIN, Patch, Unpatched, changed_signals
 from clutchwork.assembly.records import Array
 from clutchwork.assembly.system_data import GROUPS, LATER, MAKES, SystemData
 from clutchwork.base.errors import ModelError, Problem, warn
-from clutchwork.base.errors import Problem as Found
 from clutchwork.base.memoize import memoize
 from clutchwork.declare.node import Component, Law, Node, Signal
 from clutchwork.declare.schema import Spec, specs
@@ -84,7 +83,7 @@ def _kept_names(cls: Any) -> tuple[str, ...]:
 
 def anew(
     source: Model, independent: Sequence[str], speeds: int, changes: Mapping[str, Any]
-) -> tuple[Model, dict[str, Any], list[Found]]:
+) -> tuple[Model, dict[str, Any], list[Problem]]:
     """The model with other values, the fields of its System, and what is rarely wanted of it.
 
     Parameters: source, the model; independent, names of the independent speeds where they were asked for; speeds, how
