@@ -12,8 +12,8 @@
 /// Many runs that go on side by side, each up to an end of its own. docs/guide/stepping.md
 namespace clutchwork::many {
 
-/// Runs that one thread takes at once.
-constexpr std::int64_t chunk = 16;
+/// Runs that one thread takes at once, where there are many.
+constexpr std::int64_t most_at_once = 16;
 
 struct Member {
   cw_run* run;
@@ -82,8 +82,9 @@ inline int advance(const Task& task, const Member& member, std::vector<double>& 
 template <class Pause>
 std::vector<std::vector<double>> advance_all(const Task& task, int threads, Course& course, Pause&& pause) {
   const auto count = std::int64_t(task.members.size());
-  threads = int(std::min(std::int64_t(threads), 1 + (count - 1) / chunk));
-  std::vector<std::vector<double>> events(std::size_t(std::max(threads, 1)), std::vector<double>{});
+  threads = int(std::clamp<std::int64_t>(count, 1, threads));
+  const std::int64_t chunk = std::clamp<std::int64_t>(count / (4 * threads), 1, most_at_once);
+  std::vector<std::vector<double>> events(std::size_t(threads), std::vector<double>{});
   on_threads(threads, course, pause, [&](int number) {
     for (std::int64_t first; (first = course.next.fetch_add(chunk)) < count && !course.stop;) {
       const std::int64_t last = std::min(first + chunk, count);

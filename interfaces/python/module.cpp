@@ -234,21 +234,24 @@ std::vector<int> advance_group(const std::vector<Run*>& runs, double t_end) {
 /// Runs side by side, whose owner keeps them.
 class Side {
  public:
-  explicit Side(const std::vector<Run*>& runs) {
-    for (Run* run : runs) runs_.push_back(nullptr), put(std::int64_t(runs_.size()) - 1, run);
+  explicit Side(const nb::list& runs) : owner_(runs.size()), runs_(runs.size()) {
+    for (std::size_t i = 0; i < runs.size(); ++i) put(std::int64_t(i), runs[i]);
   }
 
   /// Another run takes the place of one.
-  void put(std::int64_t number, Run* run) {
-    if (run == nullptr || (row_size_ >= 0 && run->row_size() != row_size_))
-      throw nb::value_error("all runs have rows alike");
-    row_size_ = run->row_size();
-    at(number) = run->handle();
+  void put(std::int64_t number, nb::object owner) {
+    refuse_while_going();
+    const Run& run = nb::cast<const Run&>(owner);
+    if (row_size_ >= 0 && run.row_size() != row_size_) throw nb::value_error("all runs have rows alike");
+    row_size_ = run.row_size();
+    at(number) = run.handle();
+    owner_[std::size_t(number)] = std::move(owner);
   }
 
   /// Set a signal of some runs, each to a value of its own, which waits for the next step: it is given where the memory
   /// of the run is at hand.
   void set(Numbers which, std::int64_t input, Vector values) {
+    refuse_while_going();
     if (values.shape(0) != which.shape(0)) throw nb::value_error("give a value for each run");
     std::vector<double>& kept = waiting_of(input);
     for (std::size_t i = 0; i < which.shape(0); ++i) {
@@ -264,6 +267,7 @@ class Side {
 
   /// Give all values that wait.
   void give() {
+    refuse_while_going();
     for (many::Waiting& one : waiting_) {
       for (std::size_t i = 0; i < runs_.size(); ++i)
         if (!one.give(runs_[i], std::int64_t(i))) refuse();
@@ -273,6 +277,7 @@ class Side {
   /// Let some go on, each up to its end: events behind the numbers of their runs, and what a signal handler raised
   /// meanwhile, or None.
   std::tuple<nb::object, nb::object> advance(Numbers which, Vector ends, Matrix rows, Statuses status, int threads) {
+    refuse_while_going();
     const std::size_t count = runs_.size();
     if (ends.shape(0) != count || rows.shape(0) != count || status.shape(0) != count)
       throw nb::value_error("give an end, a row and a status for each run");
@@ -290,6 +295,7 @@ class Side {
     nb::object raised = nb::none();
     std::vector<std::vector<double>> events;
     {
+      const Going going(going_);
       nb::gil_scoped_release release;
       events = many::advance_all(task, threads > 1 ? threads : 1, course, [&] {
         nb::gil_scoped_acquire lock;
@@ -304,10 +310,25 @@ class Side {
   }
 
  private:
+  std::vector<nb::object> owner_;
   std::vector<cw_run*> runs_;
   std::vector<many::Waiting> waiting_;
   std::int64_t row_size_ = -1;
+  bool going_ = false;
 
+  /// While they go on.
+  struct Going {
+    bool& now;
+    explicit Going(bool& going) : now(going) { now = true; }
+    ~Going() { now = false; }
+    Going(const Going&) = delete;
+    Going& operator=(const Going&) = delete;
+  };
+
+  void refuse_while_going() const {
+    if (going_)
+      throw std::runtime_error("these runs are going on: set, read and reset them between two calls of advance");
+  }
   [[noreturn]] static void refuse() { throw nb::value_error("unknown input, or the value is not finite"); }
 
   std::vector<double>& waiting_of(std::int64_t input) {
@@ -336,9 +357,8 @@ NB_MODULE(_core, m) {
   bind_sweep(m);
   m.def("advance_group", &advance_group, nb::arg("runs"), nb::arg("t_end"),
         "Advance runs to t_end [s] together, without output: a status for each.");
-  nb::class_<Side>(m, "Side",
-                   "Runs side by side, which others keep: each is set to values and goes on to ends of its own.")
-      .def(nb::init<const std::vector<Run*>&>(), nb::arg("runs"))
+  nb::class_<Side>(m, "Side", "Runs side by side: each is set to values and goes on to ends of its own.")
+      .def(nb::init<const nb::list&>(), nb::arg("runs"))
       .def("give", &Side::give)
       .def("put", &Side::put, nb::arg("number"), nb::arg("run"))
       .def("set", &Side::set, nb::arg("which"), nb::arg("input"), nb::arg("values"))

@@ -79,6 +79,22 @@ def test_a_jerk_of_a_shaft_without_inertia_that_jumps_where_a_step_moves_is_refu
     assert "without inertia" in found.problems[0]
 
 
+@pytest.mark.parametrize("rtol", [1e-5, 1e-6])
+def test_a_product_is_refused_where_a_gradient_is(rtol: float) -> None:
+    d = cw.Driveline("light")
+    a, m, b = d.shaft("a", inertia=0.3, speed=20.0), d.shaft("m"), d.shaft("b", inertia=0.8)
+    d.add(cw.SpringDamper("k1", base=a, follower=m, stiffness=400.0, damping=3.0))
+    d.add(cw.SpringDamper("k2", base=m, follower=b, stiffness=900.0, damping=1.0))
+    d.add(cw.Torque("t", shaft=m, torque=cw.Step(height=0.1, start=0.3, offset=5.0)))
+    d.add(cw.Torque("u", shaft=a, torque=cw.Table([(0.0513 * i, 1.0 + 0.1 * (i % 3)) for i in range(20)])))
+    # so many that they are followed back
+    by = ["t.torque.start", "t.torque.height"] + [f"u.torque.values[{i}]" for i in range(1, 21)]
+    f = cw.differentiable(d, 1.0, of=cw.squared_jerk("m"), by=by, rtol=rtol, atol=1e-2 * rtol)
+    assert np.isnan(f.gradient().matrix[0]).tolist() == [True] + [False] * 21
+    with pytest.raises(cw.NoGradient, match="without inertia"):
+        f.vjp(f.x0, [1.0])
+
+
 def test_steps_at_one_instant_move_apart() -> None:
     d = cw.Driveline("two steps")
     a, b = d.shaft("a", inertia=0.3, speed=20.0), d.shaft("b", inertia=0.8)

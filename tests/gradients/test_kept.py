@@ -451,6 +451,13 @@ def test_a_torque_falls_far_faster_than_the_instant_of_its_peak_moves() -> None:
     tally = judged(d, 0.145, [cw.peak("box.IR.torque")], ["drive.torque.times[1]"])
     assert tally.wrong + tally.refused + tally.apart == []
     assert tally.compared == 1
+    # a light shaft that nothing joins to it has accelerations by which all others would look exact
+    of, by, alone = "box.IR.torque", "drive.torque.times[1]", {"rtol": 1e-6, "atol": 1e-8}
+    want = derivatives(d, 0.145, cw.peak(of), by).matrix
+    assert derivatives(d, 0.145, cw.peak(of), by, **alone).matrix == pytest.approx(want, rel=1e-4)
+    d.add(cw.Torque("spin", shaft=d.shaft("z", inertia=1e-5), torque=100.0))
+    # its own events of the other shafts are located among other steps
+    assert derivatives(d, 0.145, cw.peak(of), by, **alone).matrix == pytest.approx(want, rel=1e-3)
 
 
 def test_teeth_that_touch_bend_the_jerk() -> None:

@@ -341,3 +341,35 @@ def test_gears_in_series_without_friction_of_their_own(seed):
     run = d.simulate(1.0)
     assert (run.status, run.time[-1]) == ("done", 1.0), run.message
     assert all(np.all(np.isfinite(run[name])) for name in run.names if run[name].dtype.kind == "f")
+
+
+@pytest.mark.parametrize("seed", seeds(20))
+def test_what_breaks_away_elsewhere_moves_no_load_at_rest(seed):
+    """How a load at rest is shared does not depend on what slips in a driveline that nothing joins to it."""
+    rng = np.random.default_rng(seed)
+    ratios, efficiencies = rng.choice([2.0, -3.0, 0.5], 2), rng.uniform(0.6, 0.95, 2)
+    forces, torque = rng.uniform(0.3, 2.0, 3), float(rng.uniform(0.05, 0.9))
+    law = cw.Coulomb(static=0.3, kinetic=0.3)
+
+    def run(push):
+        d = cw.Driveline("two")
+        shafts = [d.shaft(name, inertia=0.1) for name in "abc"]
+        d.add(cw.Torque("t", shaft=shafts[0], torque=torque))
+        for i, shaft in enumerate(shafts):
+            d.add(cw.Brake(f"b{i}", shaft=shaft, friction=law, gain=1.0, normal_force=float(forces[i])))
+        for i in range(2):
+            gear = {"ratio": float(ratios[i]), "efficiency": float(efficiencies[i])}
+            d.add(cw.LossyGear(f"g{i}", input=shafts[i], output=shafts[i + 1], **gear))
+        p, q = d.shaft("p", inertia=0.1), d.shaft("q", inertia=0.1)
+        d.add(cw.Torque("u", shaft=p, torque=cw.Table([(0.0, 0.0), (0.5, 0.0), (0.5, push), (1.0, push)])))
+        d.add(cw.LossyGear("h", input=p, output=q, ratio=2.0, efficiency=0.7))
+        d.add(cw.Brake("b", shaft=q, friction=law, gain=1.0, normal_force=1.0))
+        return d.simulate(1.0, times=[0.4, 0.8, 1.0])
+
+    rests, slips = run(0.0), run(1.0)
+    if np.any(rests["a.speed"] != 0.0):
+        pytest.skip("what is held is held at no time")
+    assert abs(slips["p.speed"][-1]) > 0.1
+    for name in ("g0", "g1", "b0", "b1", "b2"):
+        # shares of one load to round-off
+        assert slips[f"{name}.torque"] == pytest.approx(rests[f"{name}.torque"], abs=1e-12), name

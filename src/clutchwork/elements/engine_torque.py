@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from math import isclose
 from typing import ClassVar
 
 from clutchwork.declare import (
@@ -63,7 +64,9 @@ class EngineTorque(Component):
     deficit: Sequence[float] = numbers(
         "N m", "torque that full boost adds at full throttle, one for each speed", example=(0.0, 1.0, 2.0)
     )
-    stall_speed: float = param("rad/s", "speed below which there is no combustion", default=0.0, at_least=0.0)
+    stall_speed: float = param(
+        "rad/s", "speed below which there is no combustion, one of speeds", default=0.0, at_least=0.0
+    )
     lag: float = param(
         "s", "time constant of the throttle, 0: none", default=0.0, at_least=0.0, fixed=True, example=0.1
     )
@@ -73,7 +76,12 @@ class EngineTorque(Component):
     idle_integral: float = param("1/rad", "rate of the throttle over the missing speed", default=0.0, at_least=0.0)
     idle_limit: float = param("1", "largest throttle of the idle control", default=1.0, above=0.0)
     limiter: str = choice("how the speed is limited", choices=("none", "band", "cut"), default="none")
-    max_speed: float = param("rad/s", "speed that it is limited to", default=NO_LIMIT, above=0.0)
+    max_speed: float = param(
+        "rad/s",
+        "speed that it is limited to; with a band one of speeds, as is where that begins",
+        default=NO_LIMIT,
+        above=0.0,
+    )
     limit_band: float = param("rad/s", "band below it, or hysteresis of the cut", default=1.0, above=0.0)
     charged: bool = flag("whether it has boost", default=False)
     boost_lag: float = param("s", "time constant of the boost", default=1.0, above=0.0)
@@ -112,7 +120,7 @@ class EngineTorque(Component):
             begin = max(self.max_speed - self.limit_band, 0.0)
             borders += [("limit_band", begin), ("max_speed", self.max_speed)]
         for name, x in borders:
-            if x not in self.speeds:
+            if not any(isclose(x, one, rel_tol=1e-12) for one in self.speeds):
                 found.append((name, f"has a border at {float(x)!r} rad/s, which is none of speeds", "add it to speeds"))
         if self.governed and self.initial_idle > self.idle_limit:
             fault = f"is {self.initial_idle:g}, above idle_limit {self.idle_limit:g}"

@@ -32,12 +32,13 @@ MOST_AT_ONCE = 256
 FAR = 1e300
 # directions that a run carries at the cost of one
 AT_ONCE = 8
-# so much tighter is the tolerance of a run that knows more of what is rough, but not below the least
+# factor of the tighter tolerance at which rough derivatives are taken again, and the least one
 TIGHTER, LEAST = 1e-2, 1e-13
 # a derivative may miss so much of the relative tolerance of a run
 BY_TOLERANCE = 100.0
 # a run is followed back from so many numbers on, and from so many more for each result
 FOLLOWED_FROM, FOLLOWED_FOR_EACH = 12, 4
+STILL_ROUGH = "its derivatives follow an instant that moves, at which rates cancel, and have fewer digits than the run"
 
 
 @dataclass(frozen=True, eq=False)
@@ -45,6 +46,7 @@ class Exact:
     """Runs with derivatives."""
 
     task: GradientTask
+    again: bool = False  # whether it is asked for what another one knows too little of
 
     @cached_property
     def runs(self) -> Runs:
@@ -62,10 +64,11 @@ class Exact:
     def _tighter(self) -> Exact | None:
         """The same with a tighter tolerance."""
         options = self.task.options
-        if options.rtol * TIGHTER < LEAST:
+        rtol = max(options.rtol * TIGHTER, LEAST)
+        if rtol >= options.rtol:
             return None
-        changes = {"rtol": options.rtol * TIGHTER, "atol": options.atol * TIGHTER}
-        return Exact(replace(self.task, options=options.changed(changes)))
+        changes = {"rtol": rtol, "atol": options.atol * rtol / options.rtol}
+        return Exact(replace(self.task, options=options.changed(changes)), again=True)
 
     # ---------------------------------------------------------------------------------------------------------- values
 
@@ -142,7 +145,8 @@ class Exact:
         return np.array([one.value for one in found]), run.slope(whole)
 
     def _is_rough(self, point: RunPoint, run: Run, one: Measure) -> bool:
-        return bool(one.missed) and bool(np.any(unknown(run, one, self.runs.sizes(point.x)) > self._asked.unknown))
+        allowed = UNKNOWN if one.is_massless else self._asked.unknown
+        return bool(one.missed) and bool(np.any(unknown(run, one, self.runs.sizes(point.x)) > allowed))
 
     # ---------------------------------------------------------------------------------------------------- at one point
 
@@ -176,6 +180,7 @@ class Exact:
         except NoGradient as none:
             raise bends_of(none, self.task) from None
         notes = [*run.notes, *noted(self.task.system, run.primal.grazes, run.primal.decided)]
+        notes += [f"{one.name}: {STILL_ROUGH}" for one in found if self._repeats(one)]
         return found, self._doubts(point, run, found), tuple(dict.fromkeys(notes))
 
     def _known_without(self, x: Array, bent: Mapping[int, str]) -> tuple[list[Line], list[Doubt], tuple[str, ...]]:
@@ -201,16 +206,20 @@ class Exact:
     def lines(self, point: RunPoint) -> tuple[Run, list[Line]]:
         """A run, and its requested outputs with plain derivatives; those that are rough are of a tighter run."""
         run, found = self._lines(point)
-        if self._tighter is None or not any(one.rough for one in found):
+        if self._tighter is None or not any(self._repeats(one) for one in found):
             return run, found
         try:
-            nearer = self._tighter._lines(self._tighter.runs.point(point.x))[1]  # noqa: SLF001, its own kind
+            nearer = self._tighter.lines(self._tighter.runs.point(point.x))[1]
         except NoGradient:
             return run, found
         whole = [
             there._replace(value=here.value) if here.rough else here for here, there in zip(found, nearer, strict=True)
         ]
         return run, whole
+
+    def _repeats(self, one: Line) -> bool:
+        """Whether a tighter run is asked for its derivatives; equal extremes are looked at once more alone."""
+        return one.rough and not (self.again and one.several)
 
     def _lines(self, point: RunPoint) -> tuple[Run, list[Line]]:
         run, outputs = self._run(point, len(self.task.labels)), self.task.outputs

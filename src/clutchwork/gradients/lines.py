@@ -21,8 +21,10 @@ Places = NDArray[np.intp]
 ALIKE = 1e-6
 # what is not known of a derivative may be so much of the value, for a number that changes by all of itself
 UNKNOWN = 1e-6
-# a number that passes zero has at least this size, of the largest one of its kind; what is less than that is zero
-PASSES, LEAST = 1e-3, 1e-18
+# a number that passes zero has at least this size, of the largest one of its kind
+PASSES = 1e-3
+# values below this are round-off
+LEAST = 1e-18
 NOWHERE, NONE = np.zeros(0, dtype=np.intp), np.zeros(0)
 
 
@@ -102,11 +104,14 @@ def _line(run: Run, name: str, one: Measure, sizes: Array, allowed: float) -> Li
 
 def unknown(run: Run, one: Measure, sizes: Array) -> Array:
     """How much is not known of the derivatives, of the value, for numbers that change by all of themselves."""
+    lost: Array
     if not run.is_forward and len(one.missed) > 1:
-        whole = run.primal.functional()
-        for moves, amount in one.missed:
-            whole.include(moves, amount)
-        lost: Array = np.abs(run.slope(whole))
+        # entry and exit of a gap may move against each other: with equal signs, and with every other one turned
+        sums = run.primal.functional(), run.primal.functional()
+        for number, (moves, amount) in enumerate(one.missed):
+            sums[0].include(moves, amount)
+            sums[1].include(moves, -amount if number % 2 else amount)
+        lost = np.maximum(*(np.abs(run.slope(whole)) for whole in sums))
     else:
         lost = sum((amount * np.abs(run.slope(moves)) for moves, amount in one.missed), start=np.zeros(len(sizes)))
     return lost * sizes / max(abs(one.value), one.size, LEAST)

@@ -53,9 +53,8 @@ class Context(NamedTuple):
     kept_as: Mapping[str, str]  # integrals by name -> signal
     begin: float  # s
     massless: frozenset[str] = frozenset()  # accelerations of shafts without inertia
-    unknown: float = (
-        1e-6  # of the value: what may be missed of a derivative, for a number that changes by all of itself
-    )
+    # of the value: what may be missed of a derivative, for a number that changes by all of itself
+    unknown: float = 1e-6
 
 
 def measures(primal: Primal, one: Output, asked: Context) -> Iterator[Measure]:

@@ -116,7 +116,10 @@ def _evaluated(forms: Mapping[str, Form], rows: Array) -> Array:
 
 
 def _largest(form: Form, rows: Array) -> float:
-    """What a signal is made of at most, of which it may be a small rest; round-off of shares was left of others."""
+    """Largest sum of the absolute terms of a signal.
+
+    Terms may cancel to a small rest, and a tiny weight may be the round-off of larger ones.
+    """
     known = form.weights(rows)
     shares = np.abs(known.values)
     most = shares.max(initial=0.0)

@@ -436,14 +436,16 @@ T solve_at_limit(LoadedLimit<T>& limit) {
   return factor;
 }
 
-/// Whether a set goes on as it moves what slips and follows loads: its independent contacts hold its load, which alone
-/// count there, without the redundant ones. docs/theory/load-dependent.md, rule 3
+/// Whether a set goes on as it moves what slips and follows its torques: its independent contacts hold its load, which
+/// alone count there, without the redundant ones. docs/theory/load-dependent.md, rule 3
 template <class T>
 bool holds_as_moved(const Workspace<T>& ws, const DependentSet<T>& set, const int* member) {
   bool slides = false;
   for (int l = 0; l < ws.sys.loads; ++l) {
     const int mode = ws.contact.mode[ws.sys.load_contact[l]];
-    slides = slides || mode == forward || mode == backward;
+    const T* by_torque = loads_by_shares(ws) + l * ws.n_directions + ws.sys.elements;
+    for (int i = 0; i < set.n && (mode == forward || mode == backward); ++i)
+      slides = slides || value(by_torque[member[i]]) != 0;
   }
   for (int i = 0; i < set.n && slides; ++i) {
     const int l = ws.loads.of[member[i]];

@@ -147,7 +147,7 @@ inline int mode_behind(const Run& ws, int c, double tolerance) {
     return ws.contact.loaded[c] ? locked : mode == locked ? open : mode;
   }
   // at rest, what a load of round-off holds is no slip
-  if (f.side[c] == 0 || (ws.loads.of[c] >= 0 && abs(slip) <= tolerance)) return locked;
+  if (f.side[c] == 0 || (ws.sys.loads > 0 && abs(slip) <= tolerance)) return locked;
   return f.lower[c] < f.upper[c] ? -f.side[c] : slip > 0 ? forward : backward;
 }
 
