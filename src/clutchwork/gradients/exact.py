@@ -33,7 +33,7 @@ FAR = 1e300
 # directions that a run carries at the cost of one
 AT_ONCE = 8
 # factor of the tighter tolerance at which rough derivatives are taken again, and the least one
-TIGHTER, LEAST = 1e-2, 1e-13
+TIGHTER, LEAST = 1e-2, 1e-12
 # a derivative may miss so much of the relative tolerance of a run
 BY_TOLERANCE = 100.0
 # a run is followed back from so many numbers on, and from so many more for each result
@@ -212,8 +212,10 @@ class Exact:
             nearer = self._tighter.lines(self._tighter.runs.point(point.x))[1]
         except NoGradient:
             return run, found
+        # near round-off a tighter run knows no more
         whole = [
-            there._replace(value=here.value) if here.rough else here for here, there in zip(found, nearer, strict=True)
+            there._replace(value=here.value) if here.rough and (here.several or there.missed < here.missed) else here
+            for here, there in zip(found, nearer, strict=True)
         ]
         return run, whole
 

@@ -43,6 +43,7 @@ class Line(NamedTuple):
     none: str = ""  # why it has no derivative from any side
     several: str = ""  # why both sides differ
     rough: bool = False  # whether a run of a tighter tolerance knows its derivatives better
+    missed: float = 0.0  # the most that is not known of one of them, of the value
 
 
 def lines(run: Run, outputs: Mapping[str, Output], labels: Sequence[str], asked: Context, sizes: Array) -> list[Line]:
@@ -99,7 +100,8 @@ def _line(run: Run, name: str, one: Measure, sizes: Array, allowed: float) -> Li
     columns = _columns(one)
     size = max(one.size, LEAST) if one.at is None else _size(run.primal, columns, one.at)
     rough = bool(why) or bool(np.any(lost > allowed))
-    return Line(name, one.value, size, left, right, one.until, one.at, columns, one.kinks, several=why, rough=rough)
+    most_missed = float(lost.max(initial=0.0))
+    return Line(name, one.value, size, left, right, one.until, one.at, columns, one.kinks, "", why, rough, most_missed)
 
 
 def unknown(run: Run, one: Measure, sizes: Array) -> Array:
