@@ -231,7 +231,7 @@ std::vector<int> advance_group(const std::vector<Run*>& runs, double t_end) {
   return statuses;
 }
 
-/// Runs side by side, whose owner keeps them.
+/// Runs side by side, which it keeps alive.
 class Side {
  public:
   explicit Side(const nb::list& runs) : owner_(runs.size()), runs_(runs.size()) {
