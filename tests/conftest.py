@@ -39,6 +39,7 @@ def pytest_configure(config: pytest.Config) -> None:
     """Markers of this test tree, and the tier for what counts random cases."""
     config.addinivalue_line("markers", "feature(name): shows a row of the parity table, tools/parity.py")
     config.addinivalue_line("markers", "random: draws random cases, in the first tier a part of them")
+    config.addinivalue_line("markers", "sampled: many costly cases alike, in the first tier a part of them")
     config.addinivalue_line("markers", "always: in the first tier whatever it takes")
     tier = config.getoption("tier")
     os.environ["CLUTCHWORK_TIER"] = tier
@@ -69,10 +70,11 @@ def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item
 def _case(item: pytest.Item) -> tiers.Case:
     """What the tier of a case follows from."""
     index: dict[str, int] = item.callspec.indices if hasattr(item, "callspec") else {}
-    others = [f"{name} {place}" for name, place in index.items() if name not in SEEDS]
+    sampled = bool(item.get_closest_marker("sampled"))
+    others = [f"{name} {place}" for name, place in index.items() if name not in SEEDS and not sampled]
     return tiers.Case(
         name=item.nodeid,
-        seeds_of=" ".join([item.nodeid.partition("[")[0], *others]) if SEEDS & set(index) else "",
+        part_of=" ".join([item.nodeid.partition("[")[0], *others]) if sampled or SEEDS & set(index) else "",
         random=bool(item.get_closest_marker("random")) or hasattr(getattr(item, "obj", None), "hypothesis"),
         always=bool(item.get_closest_marker("always")),
     )

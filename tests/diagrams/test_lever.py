@@ -22,6 +22,7 @@ from support.drawn_gearboxes import BOXES, definitions
 ALL = sorted(BOXES)
 
 
+@pytest.mark.sampled
 @pytest.mark.parametrize("name", ALL)
 @pytest.mark.parametrize("merged", [False, True])
 def test_box(name: str, merged: bool) -> None:

@@ -29,6 +29,7 @@ def unkept(box: Any) -> Any:
     return layout(box)
 
 
+@pytest.mark.sampled
 @pytest.mark.parametrize("name", ALL)
 def test_box(name: str) -> None:
     box, plan = BOXES[name], layout(BOXES[name])

@@ -39,10 +39,10 @@ def test_of_a_test_without_a_quick_case_the_cheapest_is_there() -> None:
     assert first_tier(some, {"a::x[1]": 0.9, "a::x[2]": 0.8, "a::builds": SLOW}) == {"a::x[2]"}
 
 
-def test_of_seeds_the_first_part_is_there_and_two_at_least() -> None:
-    for count, wanted in ((20, 5), (5, 2), (1, 1)):
-        some = [Case(f"a::x[{seed}]", seeds_of="a::x") for seed in range(count)]
-        assert first_tier(some, {}) == {f"a::x[{seed}]" for seed in range(wanted)}
+def test_of_seeds_and_samples_a_part_is_there_spread_evenly_and_two_at_least() -> None:
+    for count, wanted in ((20, (0, 4, 8, 12, 16)), (5, (0, 2)), (1, (0,))):
+        some = [Case(f"a::x[{seed}]", part_of="a::x") for seed in range(count)]
+        assert first_tier(some, {}) == {f"a::x[{seed}]" for seed in wanted}
 
 
 def test_a_random_test_is_there_with_a_part_of_its_cases() -> None:

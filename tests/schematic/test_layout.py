@@ -70,11 +70,13 @@ def test_the_models_are_there() -> None:
     assert sum(name.startswith(("rot_", "rt_", "tra_")) for name in MODELS) >= 10
 
 
+@pytest.mark.sampled
 def test_nothing_lies_on_anything_else(drawn: tuple[cw.Driveline, Schematic]) -> None:
     assert schematics.overlaps(drawn[1].sheet) == []
     assert schematics.on_each_other(drawn[1].sheet) == []
 
 
+@pytest.mark.sampled
 def test_without_values_too(drawn: tuple[cw.Driveline, Schematic]) -> None:
     d, full = drawn
     bare = d.draw(values=False)
@@ -85,6 +87,7 @@ def test_without_values_too(drawn: tuple[cw.Driveline, Schematic]) -> None:
     assert len(schematics.texts(full.sheet)) > len(schematics.texts(bare.sheet))
 
 
+@pytest.mark.sampled
 def test_every_name_stands_there_once(drawn: tuple[cw.Driveline, Schematic]) -> None:
     d, made = drawn
     pieces = [piece for piece in made.sheet.pieces if piece.what != "heat"]
@@ -98,6 +101,7 @@ def test_every_name_stands_there_once(drawn: tuple[cw.Driveline, Schematic]) -> 
     assert all(sum(text.text == piece.name for text in piece.text) == 1 for piece in pieces)
 
 
+@pytest.mark.sampled
 def test_lines_are_level_or_upright_and_join_what_belongs_together(drawn: tuple[cw.Driveline, Schematic]) -> None:
     d, made = drawn
     pieces = [piece for wire in made.sheet.wires for piece in wire.pieces]
@@ -128,6 +132,7 @@ def _on(point: tuple[float, float], piece: tuple) -> bool:
     return min(x1, x2) - close <= x <= max(x1, x2) + close and min(y1, y2) - close <= y <= max(y1, y2) + close
 
 
+@pytest.mark.sampled
 @pytest.mark.parametrize("name", list(MODELS))
 def test_elements_stand_between_what_they_join(name: str) -> None:
     # in one row: folding goes on at the left

@@ -1,7 +1,8 @@
 """Which cases `make test` runs: a case's tier follows from its measured CPU time.
 
-The first tier has every case that takes at most QUICK seconds or was never measured, a part of the random cases, and
-the cheapest case of each test whose cases all take longer, up to HELD seconds. The last tier has all the others.
+The first tier has every case that takes at most QUICK seconds or was never measured, a part of the random and of the
+sampled cases, and the cheapest case of each test whose cases all take longer, up to HELD seconds. The last tier has all
+the others.
 """
 
 from __future__ import annotations
@@ -24,7 +25,7 @@ QUICK = 0.5
 HELD = 2.0
 # s that a part of the random cases of a test may take there
 DRAWN = 3.0
-# the first tier draws one of so many random cases, and of seeds that are cases of their own
+# the first tier draws one of so many random cases, and of seeds and samples that are cases of their own
 PART = 4
 
 
@@ -37,8 +38,8 @@ class Case:
     """A case, and what its tier follows from beside its time."""
 
     name: str
-    # what it shares with the cases that differ in their seed alone; empty where it has none
-    seeds_of: str = ""
+    # what it shares with the cases that are seeds or samples of the same; empty where it has none
+    part_of: str = ""
     # it draws random cases inside, by `support.amount` or Hypothesis
     random: bool = False
     # it is in the first tier whatever it takes
@@ -59,9 +60,7 @@ def measured(path: Path = MEASURED) -> dict[str, float]:
 def first_tier(cases: Sequence[Case], seconds: Mapping[str, float]) -> set[str]:
     """Names of the cases of the first tier; all cases of a test are given."""
     costs = {case.name: seconds.get(case.name, 0.0) / (PART if case.random else 1) for case in cases}
-    found = {
-        case.name for case in _few_seeds(cases) if case.always or costs[case.name] <= (DRAWN if case.random else QUICK)
-    }
+    found = {case.name for case in _few(cases) if case.always or costs[case.name] <= (DRAWN if case.random else QUICK)}
     touched = {case.test for case in cases if case.name in found}
     slow: dict[str, list[str]] = defaultdict(list)
     for case in cases:
@@ -71,12 +70,17 @@ def first_tier(cases: Sequence[Case], seconds: Mapping[str, float]) -> set[str]:
     return found | {name for name in cheapest if costs[name] <= HELD}
 
 
-def _few_seeds(cases: Sequence[Case]) -> list[Case]:
-    """All cases, but the first part alone of those that differ in their seed."""
+def _few(cases: Sequence[Case]) -> list[Case]:
+    """All cases, but a part alone of those that differ in their seed, or are samples, evenly over them."""
     groups: dict[str, list[Case]] = defaultdict(list)
     for case in cases:
-        groups[case.seeds_of].append(case)
-    return [case for group, some in groups.items() for case in (some[: few(len(some))] if group else some)]
+        groups[case.part_of].append(case)
+    return [case for group, some in groups.items() for case in (_spread(some) if group else some)]
+
+
+def _spread(some: list[Case]) -> list[Case]:
+    count = few(len(some))
+    return [some[k * len(some) // count] for k in range(count)]
 
 
 def few(count: int) -> int:
