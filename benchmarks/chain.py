@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
+from itertools import pairwise
 from math import log2
 from time import process_time
 
@@ -38,6 +39,10 @@ def rows(quick: bool = False) -> Iterator[Row]:
     yield from mode_changes(3 if quick else 9)
     yield large()
     yield from at_once(3 if quick else 15)
+    yield powers("thermal chain, power of n in a step, 50 to 200", warm, (50, 200), 0.01, 1.3)
+    yield powers(
+        "contacts on one hub, power of n in a run until all slip, 64 to 256", many_contacts.star, (64, 256), 2.01, 2.0
+    )
 
 
 def steps(repeats: int) -> Iterator[Row]:
@@ -95,6 +100,28 @@ def large() -> Row:
     size = prepared.run.memory_size / 1e6
     figures = f"{taken:.1f} s, {before:.1f} s before it, {count['events']} events, {size:.1f} MB"
     return Row("chain of 1024 shafts, 0.1 s of motion", figures, "<= 60 s, <= 10 MB", taken <= 60 and size <= 10)
+
+
+def warm(n: int) -> cw.Driveline:
+    """A chain of n shafts with a thermal mass at every clutch, each cooled by the air."""
+    d = cw.Driveline(f"warm chain of {n}")
+    shafts = [d.shaft(f"s{i}", inertia=0.2 + 0.1 * (i % 5), speed=100.0 * (1 - i / n)) for i in range(n)]
+    air, law = d.ambient("air"), cw.Coulomb(static=0.16, kinetic=0.12)
+    for i, (base, follower) in enumerate(pairwise(shafts)):
+        plates, force = d.thermal(f"plates{i}", capacity=1000.0 + i % 3), 150.0 + i % 4
+        d.add(cw.Clutch(f"c{i}", base=base, follower=follower, friction=law, gain=1.0, normal_force=force, heat=plates))
+        d.add(cw.Conduction(f"air{i}", hot=plates, cold=air, conductance=2.0))
+    return d
+
+
+def powers(what: str, model: Callable[[int], cw.Driveline], sizes: tuple[int, int], t_end: float, most: float) -> Row:
+    """The power of the size with which the time of a step grows."""
+    taken = []
+    for n in sizes:
+        prepared = Prepared(model(n).assemble(), t_end)
+        taken.append(prepared.seconds(3) / prepared.statistics()["steps"])
+    power = log2(taken[1] / taken[0]) / log2(sizes[1] / sizes[0])
+    return Row(what, f"{power:.2f}", f"<= {most}", power <= most)
 
 
 def at_once(repeats: int) -> Iterator[Row]:

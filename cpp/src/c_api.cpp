@@ -262,6 +262,21 @@ int cw_advance(cw_run* run, double t_end, double* times, double* rows, std::int6
   return int(status);
 }
 
+int cw_advance_spaced(cw_run* run, double t_end, double spacing, double* times, double* rows, std::int64_t n,
+                      std::int64_t* filled) {
+  if (filled != nullptr) *filled = 0;
+  Sink sink;
+  if (!(spacing > 0)) return -1;
+  const int refused = take_sink(sink, run, t_end, times, rows, n, 1);
+  if (refused != 0) return refused;
+  sink.spacing = spacing;
+  const double most = (t_end - present(run->ws)) / spacing;
+  if (!(most + 4 <= double(n))) return int(Status::rows_full);
+  const Status status = advance(run->ws, t_end, sink);
+  if (filled != nullptr) *filled = sink.at;
+  return int(status);
+}
+
 int cw_advance_to_event(cw_run* run, double t_end) {
   Sink sink;
   const int refused = take_sink(sink, run, t_end, nullptr, nullptr, 0, 0);

@@ -104,7 +104,7 @@ class Run {
 
   /// Status, rows filled, and what a signal handler raised meanwhile, or None.
   std::tuple<int, std::int64_t, nb::object> advance(double t_end, Vector times, Matrix rows, std::int64_t first,
-                                                    int steps) {
+                                                    int steps, double spacing) {
     if (rows.shape(1) != std::size_t(cw_row_size(run_)) || rows.shape(0) != times.shape(0)) {
       throw nb::value_error("rows must have one line per time and row_size columns");
     }
@@ -117,7 +117,8 @@ class Run {
     cw_set_poll(run_, &Listener::ask, &listener);
     {
       nb::gil_scoped_release release;
-      status = cw_advance(run_, t_end, t, r, n - first, steps, &filled);
+      status = spacing > 0 ? cw_advance_spaced(run_, t_end, spacing, t, r, n - first, &filled)
+                           : cw_advance(run_, t_end, t, r, n - first, steps, &filled);
     }
     cw_set_poll(run_, nullptr, nullptr);
     if (status < 0) throw nb::value_error("the end time must be finite and not before the present time");
@@ -374,7 +375,7 @@ NB_MODULE(_core, m) {
       .def("set_param", &Run::set_param, nb::arg("offset"), nb::arg("value"))
       .def("is_settable", &Run::is_settable, nb::arg("offset"), nb::arg("value"))
       .def("advance", &Run::advance, nb::arg("t_end"), nb::arg("times"), nb::arg("rows"), nb::arg("first") = 0,
-           nb::arg("steps") = 0)
+           nb::arg("steps") = 0, nb::arg("spacing") = 0.0)
       .def("events", &Run::events)
       .def("row", &Run::row)
       .def("local", &Run::local)

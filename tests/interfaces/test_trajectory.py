@@ -248,7 +248,8 @@ def test_a_controller_reads_speeds_and_sets_a_pressure() -> None:
     assert run.events.changes()[-1].time == pytest.approx(2.1, abs=1e-6)
     assert run["c1.torque"][run.time < 0.5 - 1e-9] == pytest.approx(0.0)
     calls = len(seen)
-    assert np.array_equal(run.at(run.time).rows, run.rows)
+    # a grid reads the ends of steps from the interpolant, at a share that is rounded
+    np.testing.assert_allclose(run.at(run.time).rows, run.rows, rtol=1e-12, atol=1e-10)
     assert len(seen) == calls == 12
 
 
@@ -299,8 +300,8 @@ def test_phases_end_at_the_events_whatever_the_output(root: Path) -> None:
 def test_what_stops_the_bare_steps_is_told_where_the_finer_rows_miss_it(monkeypatch: pytest.MonkeyPatch) -> None:
     once = simulation._once
 
-    def stopped(job: Any, grid: Any, progress: Any) -> Any:
-        made, failure = once(job, grid, progress)
+    def stopped(job: Any, grid: Any, *rest: Any) -> Any:
+        made, failure = once(job, grid, *rest)
         if grid is None:
             made.status = NOT_FINITE
         return made, failure
@@ -309,5 +310,6 @@ def test_what_stops_the_bare_steps_is_told_where_the_finer_rows_miss_it(monkeypa
     d = cw.Driveline("flywheel")
     d.add(cw.Torque("t", shaft=d.shaft("wheel", inertia=1.0), torque=cw.Sine(amplitude=1.0, frequency=1.0)))
     with pytest.warns(cw.StoppedEarly):
-        run = d.simulate(1.0)
+        # steps of one length have no rows between them, so that the run is repeated
+        run = d.simulate(1.0, method="fixed", step=0.01)
     assert not run.finished

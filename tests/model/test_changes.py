@@ -13,6 +13,7 @@ import numpy as np
 import pytest
 
 import clutchwork as cw
+from clutchwork.assembly import changes as quick_changes
 from clutchwork.assembly.wiring import wiring
 from clutchwork.declare.node import Law, Signal
 from clutchwork.declare.schema import REGISTRY, Role, Spec, specs
@@ -415,6 +416,29 @@ def test_signals_of_the_model_itself_may_change_later():
     before = system.to_bytes()
     points[1] = (1.0, 5.0)
     assert system.changed({"a.speed": 1.0}).changed({"a.speed": None}).to_bytes() == before
+
+
+def test_a_signal_that_nothing_follows_from_is_looked_at_alone(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Neither the element nor the driveline is checked again; what is given may change later."""
+    system, points = six_speed.gearbox(six_speed.SHIFT).assemble(), [[t, 0.5 * p] for t, p in six_speed.SHIFT["F1"]]
+    wanted = six_speed.gearbox({**six_speed.SHIFT, "F1": [tuple(point) for point in points]}).assemble().to_bytes()
+    with monkeypatch.context() as patch:
+        for name in ("component_problems", "component_advice", "assembled"):
+            patch.setattr(quick_changes, name, None)
+        made = system.changed({"F1.pressure": cw.Table(points), "load.torque": -0.0})
+        points[1][1] = 7.0
+    assert made.changed({"load.torque": 4000.0}).to_bytes() == wanted
+    assert made.source is not None
+    assert (
+        made.to_bytes()
+        == system.changed({"F1.pressure": made.inputs[_input(made)].signal, "load.torque": -0.0}).to_bytes()
+    )
+    with pytest.raises(cw.ModelError, match="pressure"):
+        system.changed({"F1.pressure": cw.Table([(0.0, 0.0), (1.0, float("nan"))])})
+
+
+def _input(system: cw.System) -> int:
+    return [item.name for item in system.inputs].index("F1.pressure")
 
 
 def test_only_fields_with_values_have_names():

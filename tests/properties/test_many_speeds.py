@@ -10,7 +10,7 @@ import pytest
 import clutchwork as cw
 from clutchwork.declare.core import core
 from clutchwork.declare.layout import COUNTS, FEW_SPEEDS, STATUS
-from support import random_large
+from support import many_contacts, random_large
 from support.random_contacts import T_END, driveline
 
 LAW = cw.Coulomb(static=0.2, kinetic=0.1)
@@ -147,3 +147,16 @@ def test_a_room_that_is_too_small_ends_the_run(room: str) -> None:
     with np.errstate(all="ignore"):
         status = run.advance(0.1, np.zeros(0), np.zeros((0, len(run.row()))), 0, False)[0]
     assert STATUS[status][0] in ("no_mode", "bad_system")
+
+
+def test_memory_of_a_chain_is_linear() -> None:
+    """Of a System and of its run: whatever is kept whole would grow with the square."""
+    sizes = [_memory(n) for n in (100, 200, 400)]
+    for small, middle, large in zip(*sizes, strict=True):
+        assert large - middle <= 2.02 * (middle - small)
+
+
+def _memory(n: int) -> tuple[int, int]:
+    """Bytes of a chain of n shafts and n - 1 clutches, and of a run of it."""
+    data = many_contacts.row(n - 1).assemble().to_bytes()
+    return len(data), core().Run(data).memory_size

@@ -80,6 +80,12 @@ int cw_set_poll(cw_run* run, int (*poll)(void* context), void* context);
  */
 int cw_advance(cw_run* run, double t_end, double* times, double* rows, int64_t n, int steps, int64_t* filled);
 
+/* As cw_advance with one row per step, but a step that is longer than `spacing` [s], greater than 0, has several in
+   equal parts that are not. There is room for the rest of the run with this spacing, four more; else rows_full. Steps
+   of one length have one row each. */
+int cw_advance_spaced(cw_run* run, double t_end, double spacing, double* times, double* rows, int64_t n,
+                      int64_t* filled);
+
 /* As cw_advance without rows, but it returns right after the first instant at which a contact changes its state, with
    steps of one length at the end of that step: `done` at cw_time, with events that wait. Take the events that wait
    before. */

@@ -10,8 +10,18 @@ from types import MappingProxyType
 from typing import Any, NamedTuple, TypeVar, cast
 
 from clutchwork.assembly.assemble import assembled
+from clutchwork.assembly.inputs import plain_signal
 from clutchwork.assembly.masses import masses
-from clutchwork.assembly.patches import PLAIN, Patch, Unpatched, changed_signals, parameter_place, patched, patches
+from clutchwork.assembly.patches import (
+    PLAIN,
+    Patch,
+    Unpatched,
+    changed_signals,
+    parameter_place,
+    patched,
+    patches,
+    signal_patches,
+)
 from clutchwork.assembly.records import Array
 from clutchwork.assembly.system_data import GROUPS, LATER, MAKES, SystemData
 from clutchwork.base.errors import ModelError, Problem, warn
@@ -21,12 +31,13 @@ from clutchwork.declare.schema import Spec, specs
 from clutchwork.declare.wording import words_of_files
 from clutchwork.model.changes import Owners, Renewed, Target, changed_model, named, renewed, target, with_values
 from clutchwork.model.components import component_advice, component_problems
-from clutchwork.model.fields import BROKEN, At, law_problems, value_problems
+from clutchwork.model.fields import BROKEN, At, law_problems, signal_problems, value_problems
 from clutchwork.model.findings import findings
 from clutchwork.model.model import Model
 from clutchwork.model.numbers import is_right as is_right_number
-from clutchwork.model.parts import role
+from clutchwork.model.parts import is_stop, role
 from clutchwork.model.problems import TOO_FAR_APART
+from clutchwork.model.structure import follows_load
 from clutchwork.model.temperatures import temperature_advice
 
 S = TypeVar("S", bound=SystemData)
@@ -150,11 +161,11 @@ def _aim(system: SystemData, name: str) -> Target | None:
 
 
 class OwnWord(NamedTuple):
-    """A number of an element from which nothing follows but its own word."""
+    """A number or signal of an element from which nothing follows but its own words."""
 
     aim: Target
     spec: Spec
-    place: int  # among all parameters
+    place: int  # among all parameters, or all signals
 
 
 # what more may follow from a number of an element
@@ -163,7 +174,7 @@ MORE = ("directions", "own_states", "passive", "start_positions", "start_ratio")
 
 @memoize
 def _own_word(system: SystemData, name: str) -> OwnWord | None:
-    """The word of a number; None where more may follow from it."""
+    """The words of a number or a signal; None where more may follow from it."""
     aim, where = _aim(system, name), system.numbered
     if aim is None or len(aim.path) != 1 or not isinstance(aim.owner, Component) or aim.owner.name in where.referred:
         return None
@@ -173,23 +184,55 @@ def _own_word(system: SystemData, name: str) -> OwnWord | None:
     if role(owner) not in PLAIN or any(getattr(kind, rule) is not getattr(Component, rule) for rule in follows):
         return None
     spec = next(spec for item, spec in specs(kind) if item.name == aim.path[0])
-    given = type(getattr(owner, aim.path[0])) is float and spec.what == "param"
-    if not given or spec.choices or ruled(owner, [aim.path]) is not None:
+    given = getattr(owner, aim.path[0])
+    if spec.what == "signal":
+        known = (type(given) is float or isinstance(given, Signal)) and name in where.inputs
+        # a signal is no number of `ruled`, but the same rules of its element look at it
+        plain = known and spec.unit != "K" and not (has_rules(kind) or is_stop(owner) or follows_load(owner))
+        return OwnWord(aim, spec, where.inputs[name]) if plain else None
+    if type(given) is not float or spec.what != "param" or spec.choices or ruled(owner, [aim.path]) is not None:
         return None
     return OwnWord(aim, spec, parameter_place(where, owner, aim.path[0]))
+
+
+# where nobody reads a message
+NOWHERE = At("", "")
+
+
+def _own_signal(word: OwnWord, value: Any) -> Signal | None:
+    """A signal, or a number as one, kept from changes; None where it needs a further look."""
+    if type(value) is float:
+        return plain_signal(value) if is_right_number(value, word.spec) else None
+    if not isinstance(value, Signal) or value.has_units or any(signal_problems(value, word.spec, NOWHERE)):
+        return None
+    return cast(Signal, _kept(value))
 
 
 def _of_words(system: SystemData, changes: Mapping[str, Any]) -> Quick | None:
     """The changes where all of them are such numbers."""
     found, aims, values = list[Patch](), list[tuple[Target, Any]](), dict[str, Values]()
+    signals = dict[int, Signal]()
     for name, value in changes.items():
         word = _own_word(system, name) if isinstance(name, str) else None
-        if word is None or not is_right_number(value, word.spec):
+        if word is None:
             return None
-        aims.append((word.aim, value))
-        found.append(Patch("params", word.place, [value]))
-        values.setdefault(word.aim.owner.name, []).append((word.aim.path, value))
-    return Quick(patched(system.arrays, found), aims, values, {}, {}) if found else None
+        kept = value
+        if word.spec.what == "signal":
+            signal = _own_signal(word, value)
+            if signal is None:
+                return None
+            signals[word.place], kept = signal, value if type(value) is float else signal
+            try:
+                found += signal_patches(system.numbered, name, signal)
+            except Unpatched:
+                return None
+        elif is_right_number(value, word.spec):
+            found.append(Patch("params", word.place, [value]))
+        else:
+            return None
+        aims.append((word.aim, kept))
+        values.setdefault(word.aim.owner.name, []).append((word.aim.path, kept))
+    return Quick(patched(system.arrays, found), aims, values, signals, {}) if found else None
 
 
 def quick(system: SystemData, changes: Mapping[str, Any]) -> Quick | None:
@@ -246,11 +289,17 @@ def _right(given: Mapping[str, tuple[Component, Values]]) -> dict[str, tuple[Com
 def _kept(value: Any) -> Any:
     """A value, or a copy of one that holds lists, which its owner may change later."""
     if type(value) is list:
-        return [_kept(item) for item in value]
+        return [*map(_kept, value)]
     try:
         hash(value)
     except TypeError:
-        return deepcopy(value)
+        if type(value) is tuple:
+            return (*map(_kept, value),)
+        if not isinstance(value, Signal):
+            return deepcopy(value)
+        made = object.__new__(type(value))
+        vars(made).update({item.name: _kept(getattr(value, item.name)) for item in fields(value)})
+        return made
     return value
 
 
@@ -285,9 +334,15 @@ def ruled(owner: Component, paths: Sequence[tuple[str, ...]]) -> Component | Law
     """
     law, own = owner.friction, _plain_numbers(type(owner))
     known = own | {("friction", *path) for path in (_plain_numbers(type(law)) if isinstance(law, Law) else ())}
-    if not known.issuperset(paths) or any(getattr(type(owner), rule) is not getattr(Component, rule) for rule in RULES):
+    if not known.issuperset(paths) or has_rules(type(owner)):
         return owner
     return None if own.issuperset(paths) else law
+
+
+@cache
+def has_rules(kind: Any) -> bool:
+    """Whether a kind of element looks at its values together, or makes something of them."""
+    return any(getattr(kind, rule) is not getattr(Component, rule) for rule in RULES)
 
 
 def is_right_law(law: Law) -> bool:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
 from itertools import takewhile
+from math import copysign
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
@@ -206,13 +207,20 @@ def signal_patches(where: Numbered, name: str, signal: Signal) -> Iterator[Patch
     number, arrays = where.inputs.get(name, -1), where.arrays
     if number < 0:
         raise Unpatched
-    pieces, first = signal.segments(), int(arrays["input_first"][number])
+    pieces, first, period = signal.segments(), int(arrays["input_first"][number]), signal.repeats()
     if len(pieces) != int(arrays["input_count"][number]):
         raise Unpatched
-    yield Patch("input_period", number, [signal.repeats()])
-    yield Patch("input_value", number, [waveform.value(signal, 0.0)])
+    yield from _word(arrays, "input_period", number, period)
+    yield from _word(arrays, "input_value", number, waveform.value_of(pieces, period, 0.0))
     yield Patch("segment_time", first, [piece[0] for piece in pieces])
     yield Patch("segment_coef", 12 * first, [number for piece in pieces for number in piece[1:]])
+
+
+def _word(arrays: Mapping[str, NDArray[Any]], name: str, number: int, value: float) -> Iterator[Patch]:
+    """A number where it is another one, a zero of the other sign too."""
+    old = float(arrays[name][number])
+    if old != value or copysign(1.0, old) != copysign(1.0, value):
+        yield Patch(name, number, [value])
 
 
 def _start(where: Numbered, old: Component, new: Component) -> Iterator[Patch]:

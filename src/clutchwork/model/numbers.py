@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from itertools import pairwise
 from math import inf, isfinite
 from numbers import Real
 from typing import Any, NamedTuple
@@ -130,8 +131,33 @@ def _is_row(item: Any) -> bool:
     return hasattr(item, "__len__") and not has_unit(item)
 
 
+# what points are lists of
+ROWS = frozenset((list, tuple))
+
+
+def is_plain_curve(value: Any, spec: Spec) -> bool:
+    """Whether points need no further look, as almost all do."""
+    if type(value) not in ROWS or not value:
+        return False
+    least = -inf if spec.at_least is None else spec.at_least
+    for point in value:
+        if type(point) not in ROWS or len(point) != 2 or type(point[0]) is not float or type(point[1]) is not float:
+            return False
+        if not (isfinite(point[0]) and least <= point[1] < inf):
+            return False
+    for (x, y), (x_next, y_next) in pairwise(value):
+        width = x_next - x
+        if width < 0.0 or (width == 0.0 and spec.rising == "strictly"):
+            return False
+        if width > 0.0 and not isfinite((y_next - y) / width):
+            return False
+    return True
+
+
 def curve_problems(value: Any, spec: Spec, at: At) -> Iterator[Problem]:
     """Points with increasing abscissae, or a number where that is allowed."""
+    if is_plain_curve(value, spec):
+        return
     if spec.constant and isinstance(value, Real):
         yield from number_problems(value, spec, at)
         return

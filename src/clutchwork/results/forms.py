@@ -168,8 +168,16 @@ class Dot(Form):
         return cls(used, vector[used])
 
     def __call__(self, rows: Rows) -> Array:
-        terms = [factor * rows[:, index] for index, factor in zip(self.used, self.factors, strict=True)]
-        return sum(terms[1:], terms[0]) if terms else np.zeros(len(rows))
+        total: Array | None = None
+        for index, factor in zip(self.used.tolist(), self.factors.tolist(), strict=True):
+            column = rows[:, index]
+            # most factors are signs, which need no product
+            if total is not None and factor == -1.0:
+                total = total - column
+                continue
+            term = column if factor == 1.0 else factor * column
+            total = term if total is None else total + term
+        return np.zeros(len(rows)) if total is None else total
 
     def reads(self) -> set[int]:
         return {int(index) for index in self.used}

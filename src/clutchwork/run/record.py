@@ -38,10 +38,11 @@ class Recording:
         self._parts: list[tuple[Array, Array]] = []
         self._events: list[Array] = []
 
-    def advance(self, stop: float, times: Array, rows: Array, first: int, steps: bool) -> int:
+    def advance(self, stop: float, times: Array, rows: Array, first: int, steps: bool, spacing: float = 0.0) -> int:
         """Let the core run; the number of rows that it added."""
         started = perf_counter()
-        self.status, filled, self.raised = self.run.advance(stop, times, rows, first, steps)
+        between = (spacing,) if spacing else ()
+        self.status, filled, self.raised = self.run.advance(stop, times, rows, first, steps, *between)
         if self.raised is not None:
             self.status = INTERRUPTED
         self.core_seconds += perf_counter() - started
@@ -80,15 +81,25 @@ def _joined(parts: list[Array], nothing: Array) -> Array:
     return parts[0] if len(parts) == 1 else np.concatenate([nothing, *parts])
 
 
-def record(recording: Recording, t_end: float, grid: Array | None, course: Schedule, progress: Told | None) -> None:
-    """Run to the end, or until the core stops; a grid of None records the solver's steps."""
+def record(
+    recording: Recording,
+    t_end: float,
+    grid: Array | None,
+    course: Schedule,
+    progress: Told | None,
+    spacing: float = 0.0,
+) -> None:
+    """Run to the end, or until the core stops; a grid of None records the solver's steps.
+
+    Parameters: spacing, of steps that are longer also instants between their ends [s]; 0: of none.
+    """
     run = recording.run
     start = begin = run.time
     # one that goes on from a state does not give its first row by itself
     for number, stop in enumerate(course.stops(begin, t_end)):
         acted = course.act(run, begin, number) or (number == 0 and recording.continued)
         if grid is None:
-            _steps(recording, stop, acted, progress)
+            _steps(recording, stop, acted, progress, spacing)
         else:
             _grid(recording, stop, _part(grid, begin, stop, begin == start, stop == t_end), progress)
         if recording.status != DONE:
@@ -96,7 +107,7 @@ def record(recording: Recording, t_end: float, grid: Array | None, course: Sched
         begin = stop
 
 
-def _steps(recording: Recording, stop: float, acted: bool, progress: Told | None) -> None:
+def _steps(recording: Recording, stop: float, acted: bool, progress: Told | None, spacing: float) -> None:
     """Record every step of the solver, in buffers that grow."""
     run, size = recording.run, FIRST_CHUNK
     skip_at = -1.0
@@ -105,15 +116,23 @@ def _steps(recording: Recording, stop: float, acted: bool, progress: Told | None
         skip_at = run.time
         recording.add(np.array([skip_at]), np.array(recording.look()).reshape(1, -1))
     while True:
-        times, rows = np.empty(size), np.empty((size, recording.row_size))
-        filled = recording.advance(stop, times, rows, 0, True)
+        # the core takes no less than what the rest of the run may fill
+        count = size + (int((stop - run.time) / spacing) + 4 if spacing else 0)
+        times, rows = np.empty(count), np.empty((count, recording.row_size))
+        filled = recording.advance(stop, times, rows, 0, True, spacing)
         first = int(np.searchsorted(times[:filled], skip_at, "right"))
-        recording.add(times[first:filled].copy(), rows[first:filled].copy())
+        recording.add(*_cut(times, rows, first, filled))
         if progress is not None:
             progress(run.time)
         if recording.status not in (ROWS_FULL, EVENTS_FULL):
             return
         size = min(2 * size, LARGEST_CHUNK)
+
+
+def _cut(times: Array, rows: Array, first: int, last: int) -> tuple[Array, Array]:
+    """Some of the rows; alone, where most of their memory would be kept for nothing."""
+    some = times[first:last], rows[first:last]
+    return some if 2 * (last - first) > len(times) else (some[0].copy(), some[1].copy())
 
 
 def _grid(recording: Recording, stop: float, times: Array, progress: Told | None) -> None:

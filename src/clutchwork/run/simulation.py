@@ -203,20 +203,24 @@ def trajectory(job: Job, progress: Told | None) -> Trajectory:
 
 
 def _collect(job: Job, progress: Told | None) -> tuple[Recording, SimulationError | None]:
-    """Record a run; smooth output repeats it on a grid that is known to hold every step and event."""
+    """Record a run; smooth output is that of its steps and of instants between them, so that none are far apart.
+
+    Where that is not so, as with steps of one length, which pass over jumps, the run is repeated on a grid.
+    """
     grid = None
     if job.options.dt is not None or job.options.times is not None:
         from clutchwork.run.grid import output_grid
 
         grid = output_grid(job.options, job.t_end)
-    first, failure = _once(job, grid, progress)
-    if grid is not None or job.options.output != "smooth" or failure is not None or first.status == INTERRUPTED:
+    smooth = grid is None and job.options.output == "smooth"
+    spacing = (job.t_end - job.begin) / job.options.points if smooth else 0.0
+    first, failure = _once(job, grid, progress, spacing)
+    if not spacing or failure is not None or first.status == INTERRUPTED:
         return first, failure
-    spacing = (job.t_end - job.begin) / job.options.points
-    finer = refined(first.times, spacing, jump_times(job.system, job.begin, job.t_end)) if spacing else first.times
-    if finer.size == first.times.size:
+    times, jumps = first.times, jump_times(job.system, job.begin, job.t_end)
+    if is_refined(times, spacing, jumps):
         return first, None
-    second, failure = _once(job, finer, None)
+    second, failure = _once(job, refined(times, spacing, jumps), None)
     second.core_seconds = first.core_seconds
     if second.status == INTERRUPTED:
         # the bare steps reach further
@@ -228,19 +232,36 @@ def _collect(job: Job, progress: Told | None) -> tuple[Recording, SimulationErro
     return second, failure
 
 
-def _once(job: Job, grid: Array | None, progress: Told | None) -> tuple[Recording, SimulationError | None]:
+def _once(
+    job: Job, grid: Array | None, progress: Told | None, spacing: float = 0.0
+) -> tuple[Recording, SimulationError | None]:
     run = begun(job.system, job.options, job.start)
     # what was stepped or goes on from a state is looked at without a trace
     plain = job.start is None and isinstance(job.course, Control)
     recording = Recording(run, job.start is not None, None if plain else partial(row_of, run))
     try:
-        record(recording, job.t_end, grid, job.course, progress)
+        record(recording, job.t_end, grid, job.course, progress, spacing)
     except SimulationError as error:
         return recording, error
     except KeyboardInterrupt as error:
         # between two calls of the core
         recording.status, recording.raised = INTERRUPTED, error
     return recording, None
+
+
+def is_refined(times: Array, spacing: float, jumps: Array) -> bool:
+    """Whether there are both limits at every jump, and no two instants further apart than the spacing.
+
+    The core adds up the periods of a signal in its own way, so that its instants are those of Python within round-off.
+    """
+    if times.size < 2:
+        return not times.size or not np.any(jumps <= times[-1])
+    round_off = 4.0 * np.spacing(np.abs(times[-1]))
+    if (times[1:] - times[:-1]).max() > spacing * (1.0 + 1e-9) + round_off:
+        return False
+    reached = jumps[jumps < times[-1]]
+    present = np.searchsorted(times, reached + round_off, "right") - np.searchsorted(times, reached - round_off, "left")
+    return bool((present >= 2).all())
 
 
 def refined(steps: Array, spacing: float, jumps: Array) -> Array:

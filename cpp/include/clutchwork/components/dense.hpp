@@ -76,6 +76,8 @@ bool invert(int n, T* a, int* pivot) {
     for (int r = 0; r < n; ++r) {
       if (r == c) continue;
       const T factor = a[r * n + c];
+      // most shared states flow to few others
+      if (!counts(factor)) continue;
       a[r * n + c] = T(0);
       for (int j = 0; j < n; ++j) a[r * n + j] -= factor * a[c * n + j];
     }

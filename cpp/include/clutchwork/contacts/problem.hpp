@@ -118,22 +118,37 @@ void newton_step(BoundedProblem<T>& p, int m, bool regular) {
   backward_solve(m, p.near, p.factor, p.trial);
   for (int a = 0; a < m; ++a) p.slope[p.free[a]] = p.trial[a];
 }
-/// Longest step in [0, 1] that keeps the bounds, and the contact that stops it (-1: none).
+
+/// The share of its step at which contact i meets a bound; infinity: it does not, or does not move.
 template <class T>
-T longest_step(const BoundedProblem<T>& p, int& blocking) {
+T room_of(const BoundedProblem<T>& p, int i) {
+  if (p.bound[i] != 0 || value(p.slope[i]) == 0) return T(infinity);
+  const T limit = p.slope[i] > T(0) ? p.upper[i] : p.lower[i];
+  return abs(value(limit)) == infinity ? T(infinity) : (limit - p.x[i]) / p.slope[i];
+}
+
+/// Of a step: what meets a bound within it meets it at once, but for round-off.
+inline constexpr double at_once = 1e-12;
+
+/// The longest step in [0, 1] that keeps the bounds. Whatever meets a bound there is held at it, all at once where
+/// several do. Whether any does.
+template <class T>
+bool step_to_bounds(BoundedProblem<T>& p) {
   T alpha = T(1);
-  blocking = -1;
+  bool blocked = false;
   for (int i = 0; i < p.n; ++i) {
-    if (p.bound[i] != 0 || value(p.slope[i]) == 0) continue;
-    const T limit = p.slope[i] > T(0) ? p.upper[i] : p.lower[i];
-    if (abs(value(limit)) == infinity) continue;
-    const T room = (limit - p.x[i]) / p.slope[i];
-    if (room < alpha) {
-      alpha = larger(room, T(0));
-      blocking = i;
-    }
+    const T room = room_of(p, i);
+    if (room < alpha) alpha = larger(room, T(0)), blocked = true;
   }
-  return alpha;
+  for (int i = 0; i < p.n; ++i) {
+    if (p.bound[i] != 0) continue;
+    const bool meets = blocked && !(room_of(p, i) > alpha + T(at_once));
+    p.x[i] += alpha * p.slope[i];
+    if (!meets) continue;
+    p.bound[i] = p.slope[i] > T(0) ? 1 : -1;
+    p.x[i] = p.bound[i] > 0 ? p.upper[i] : p.lower[i];
+  }
+  return blocked;
 }
 
 /// The bound contact whose torque most wants to come back inside (-1: none).
@@ -189,16 +204,7 @@ bool solve(BoundedProblem<T>& p, bool warm = false) {
     m = factor_free(p);
     if (m < 0) return false;
     newton_step(p, m, true);
-    int blocking;
-    const T alpha = longest_step(p, blocking);
-    for (int i = 0; i < p.n; ++i) {
-      if (p.bound[i] == 0) p.x[i] += alpha * p.slope[i];
-    }
-    if (blocking >= 0) {
-      p.bound[blocking] = p.slope[blocking] > T(0) ? 1 : -1;
-      p.x[blocking] = p.bound[blocking] > 0 ? p.upper[blocking] : p.lower[blocking];
-      continue;
-    }
+    if (step_to_bounds(p)) continue;
     const int release = most_violated(p);
     if (release < 0) {
       solved = true;

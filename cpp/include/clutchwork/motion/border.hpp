@@ -25,6 +25,8 @@ bool factor_border(Form& form, T scale, Solve&& solve) {
   Workspace<T>& ws = form.ws;
   const int nx = int(ws.sys.shared), nz = form.nz(), n = nz + int(ws.sys.states),
             stride = int(ws.sys.speeds + ws.sys.states);
+  // where a state acts on no torque there is no answer; scratch until the inversion
+  int* acts = ws.shared.pivot;
   for (int j = 0; j < nx; ++j) {
     T* b = ws.shared.reach + j * stride;
     for (int i = 0; i < n; ++i) b[i] = T(0);
@@ -34,12 +36,13 @@ bool factor_border(Form& form, T scale, Solve&& solve) {
       if (counts(c)) form.push(k, c, b), any = true;
     }
     if (any) solve(b);
+    acts[j] = any;
   }
   T* s = ws.shared.inverse;
   for (int i = 0; i < nx; ++i) {
     for (int j = 0; j < nx; ++j) {
-      s[i * nx + j] = (i == j ? scale : T(0)) - ws.jacobian.by_shared[i * nx + j] -
-                      border_times(form, i, ws.shared.reach + j * stride);
+      s[i * nx + j] = (i == j ? scale : T(0)) - ws.jacobian.by_shared[i * nx + j];
+      if (acts[j] != 0) s[i * nx + j] -= border_times(form, i, ws.shared.reach + j * stride);
     }
   }
   return invert(nx, s, ws.shared.pivot);

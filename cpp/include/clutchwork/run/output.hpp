@@ -21,9 +21,19 @@ struct Sink {
   std::int64_t count = 0;        ///< rows that fit
   std::int64_t at = 0;           ///< rows filled
   std::int64_t steps = 0;        ///< rows in every step, the last at its end; 0: a grid
+  double spacing = infinity;     ///< [s] with one row in every step: more where it is longer
   double restarted = -infinity;  ///< [s] where a phase has started last
   std::int64_t restart_row = 0;  ///< rows before those of that start
   bool lean = false;             ///< the last row has only what is read of it
+  bool behind = false;           ///< the last row is that behind a knot, which the next step knows better
+
+  /// Equal parts of a step of a length that have a row each.
+  std::int64_t parts_of(double length) const {
+    if (!(spacing < infinity)) return steps;
+    const double parts = length / spacing - 1e-9;
+    const std::int64_t whole = std::int64_t(parts);
+    return whole < 1 ? 1 : whole + std::int64_t(double(whole) < parts);
+  }
 
   /// A phase starts at time t: of several decisions at one instant the last one is the right limit.
   void restart(double t) {
@@ -241,7 +251,7 @@ CLUTCHWORK_INLINE R share_of_row(std::int64_t k, std::int64_t parts, R start, R 
 /// Rows that divide the step up to s_end into equal parts, the last one at its end. `running`: all is well.
 template <class Form>
 Status emit_parts(Form& form, Step<Form>& step, double s_end, double end, Sink& sink) {
-  const std::int64_t parts = s_end > 0 ? sink.steps : 1;
+  const std::int64_t parts = s_end > 0 ? sink.parts_of(end - step.t) : 1;
   auto& out = form.ws.out;
   if (sink.steps > 1) {
     // a step whose parts the time cannot tell apart has none, and what starts behind it is where it begins
@@ -250,10 +260,22 @@ Status emit_parts(Form& form, Step<Form>& step, double s_end, double end, Sink& 
     if (parts > 1 && out.skipped) return Status::running;
     out.shown = end;
   }
+  if (sink.behind && s_end > 0) {
+    --sink.at;
+    if (!fill_row(form, step, 0.0, s_end, sink)) return Status::not_finite;
+    ++sink.at;
+  }
+  sink.behind = false;
   // rows at the end of a step are compared
   const bool lean = out.inside.n >= 0 && form.ws.sys.prescribed + form.ws.sys.loads == 0;
   for (std::int64_t k = 1; k <= parts; ++k) {
-    const double s = share_of_row<double>(k, parts, step.t, step.h, s_end, end, sink.times[sink.at]);
+    double& t = sink.times[sink.at];
+    double s = share_of_row<double>(k, parts, step.t, step.h, s_end, end, t);
+    if (sink.spacing < infinity) {
+      // the instants of a grid that divides what lies between two rows; at the end the state itself
+      if (k < parts) t = step.t + double(k) * ((end - step.t) / double(parts));
+      s = k < parts ? smaller(s_end, (t - step.t) / step.h) : s_end;
+    }
     bool filled = false;
     // a build that must be small fills whole rows
     if constexpr (has_sizes<Form>)

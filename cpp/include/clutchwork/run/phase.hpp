@@ -301,7 +301,9 @@ class Phase : public StepSize<typename Form::Scalar> {
     if (sink_.steps == 0 || ws_.time >= t_end_) return;
     const Status shown = emit_start(form_, step_, sink_, true);
     if (shown != Status::running) return leave(shown);
-    if (!jumps && !row_jumps(ws_, sink_)) --sink_.at;
+    const bool kept = jumps || row_jumps(ws_, sink_);
+    if (!kept) --sink_.at;
+    sink_.behind = kept && sink_.spacing < infinity;
     linearize_start();
   }
 

@@ -43,8 +43,13 @@ struct StepSize {
   /// Whether a knot or the end is reached.
   CLUTCHWORK_INLINE bool is_due() const { return ws_.time >= ws_.in.next_knot || ws_.time >= t_end_; }
 
+  /// Rows inside the next step, at most.
+  std::int64_t most_rows() const {
+    return sink_.spacing < infinity ? sink_.parts_of(smaller(1.001 * h_, t_end_ - ws_.time)) : sink_.steps;
+  }
+
   Status what_is_spent() const {
-    if (sink_.steps > 0 && sink_.at + sink_.steps + 2 > sink_.count) return Status::rows_full;
+    if (sink_.steps > 0 && sink_.at + most_rows() + 2 > sink_.count) return Status::rows_full;
     if (ws_.events.n >= EventBuffer::room) return Status::events_full;
     if (ws_.statistics.steps + ws_.statistics.rejected >= ws_.options.max_steps) return Status::too_many_steps;
     return ws_.poll.stops() ? Status::interrupted : Status::running;

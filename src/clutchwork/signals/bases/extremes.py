@@ -9,6 +9,8 @@ from typing import NamedTuple
 from clutchwork.declare.node import Segment, Signal
 from clutchwork.signals.bases.waveform import piece_value
 
+# what a straight piece has behind its value and slope
+STRAIGHT = Segment(0.0)[3:]
 # time constants after which a wave has died away, to some 1e-17 of itself
 SETTLED = 40.0
 
@@ -40,6 +42,9 @@ def extremes(signal: Signal) -> Iterator[Reached]:
 
 def _times(piece: Segment, first: float, end: float) -> Iterator[float]:
     """Both ends of a piece, of one without end where its waves have died away, and where it turns between them."""
+    if piece[3:] == STRAIGHT:
+        yield from (first, end if end < inf else first)
+        return
     yield first
     yield from (piece.start + s for s in sorted(_turns(piece, first - piece.start)) if first < piece.start + s < end)
     yield end if end < inf else first + SETTLED / min((wave[3] for wave in piece.waves if wave[3] > 0.0), default=inf)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import cmath
+from collections.abc import Sequence
 from itertools import chain
 from math import comb, exp, pi, sin
 
@@ -26,7 +27,11 @@ class Filtered(Signal):
 
 def value(signal: Signal, time: float) -> float:
     """Value of a signal at a time [s]; of one that is set from outside: 0."""
-    pieces, period = signal.segments(), signal.repeats()
+    return value_of(signal.segments(), signal.repeats(), time)
+
+
+def value_of(pieces: Sequence[Segment], period: float, time: float) -> float:
+    """The same from its pieces and its period."""
     if not pieces:
         return 0.0
     first = pieces[0].start
@@ -42,6 +47,8 @@ def piece_value(piece: Segment, time: float) -> float:
     """Value of one piece at a time [s]."""
     s = time - piece.start
     smooth = piece.c0 + s * (piece.c1 + s * (piece.c2 + s * piece.c3))
+    if piece.amplitude == 0.0 and piece.amplitude_2 == 0.0:
+        return smooth
     return smooth + sum(size * exp(-decay * s) * sin(omega * s + phase) for size, omega, phase, decay in piece.waves)
 
 
