@@ -8,6 +8,7 @@ namespace clutchwork::fixed {
 
 /// Whether all numbers of a row and its kinetic energy are finite for sure: the sum of all of them is.
 inline bool is_sound(const Run& ws, const double* row) {
+  if constexpr (!has_few_sizes) return false;
   const double* speed = row + ws.row.speed;
   Two sum = {}, energy = {};
   double rest = 0;

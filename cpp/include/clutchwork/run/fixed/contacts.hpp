@@ -120,6 +120,7 @@ inline double share_at_limit(const Run& ws, int c, int way, double h) {
 
 /// Whether a contact that ends at a bound says otherwise than its box, which may be the only one that it has.
 CLUTCHWORK_INLINE bool any_may_change(const Fixed<double>& f, int ne, int nc) {
+  if constexpr (!has_few_sizes) return true;
   for (int c = 0; c < nc; ++c) {
     if (f.side[c] == 0) continue;
     if (f.box[c] == sliding ? f.start_rate[ne + c] * f.end_slip[c] < 0 : f.box[c] == at_rest && f.end_slip[c] != 0)

@@ -26,6 +26,17 @@ template <class Row>
 CLUTCHWORK_INLINE void multiply(int nv, int n, int column, const double* matrix, Row&& sparse, const double* x,
                                 double* y) {
   static_assert(most_whole_speeds == 4);
+  if constexpr (!has_few_sizes) {
+    for (int i = 0; i < n; ++i) {
+      if (nv > most_whole_speeds) {
+        y[i] = sparse(i).times(x);
+        continue;
+      }
+      y[i] = matrix[i] * x[0];
+      for (int k = 1; k < nv; ++k) y[i] += matrix[k * column + i] * x[k];
+    }
+    return;
+  }
   switch (nv) {
     case 1:
       return multiply_few<1>(n, column, matrix, x, y);
