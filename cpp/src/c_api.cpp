@@ -48,8 +48,11 @@ bool is_finite(double x) { return x - x == 0; }
 /// Present time; before the start the one at which it will be.
 double present(const Workspace<double>& ws) { return ws.started ? ws.time : ws.options.t_start; }
 
-/// A signal steps at the present time.
-void make_knot(Workspace<double>& ws) {
+/// A signal steps at the present time; `alone`: its value is all that changes, -1: its segments do.
+void make_knot(Workspace<double>& ws, int alone = -1) {
+  const bool first = alone >= 0 && ws.in.next_knot > ws.time;
+  if (first) ws.in.alone = alone, ws.in.knot_behind = ws.in.next_knot;
+  if (!first && ws.in.alone != alone) ws.in.alone = -1;
   ws.in.next_knot = -infinity;
   // before the first step the value belongs to the start, which is decided anew
   if (ws.statistics.steps + ws.statistics.rejected > 0) return;
@@ -162,7 +165,7 @@ int cw_set_input(cw_run* run, std::int64_t input, double value) {
   if (is_held(run->ws, int(input)) && signal.held == value && run->ws.in.next_knot > run->ws.time) return 1;
   signal.held = value;
   signal.given = run->ws.sys.input_count[input] != 0;
-  make_knot(run->ws);
+  make_knot(run->ws, int(input));
   return 1;
 }
 

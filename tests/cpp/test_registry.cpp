@@ -171,6 +171,25 @@ void over_arguments(F&& call, Fields fields, int inputs, int states, int outputs
   } while (fields.next_words());
 }
 
+/// What says that it is linear has the same slopes everywhere, whatever its inputs are, and no pieces.
+template <class E>
+void is_a_line(const Fields& fields) {
+  static_assert(E::ways == 1 && E::states <= 1 && !Kinked<E> && !SwitchingLaw<E>);
+  using S = Dual<double, 2>;
+  const auto& p = *reinterpret_cast<const typename E::template Params<double>*>(fields.start);
+  check::Random g{23};
+  S first[2] = {};
+  for (int round = 0; round < 20; ++round) {
+    S state[1] = {S::variable(g.between(-9, 9), 1)}, input[most_inputs], found[2] = {};
+    for (S& x : input) x = S(g.between(-9, 9));
+    const At<S> at{S::variable(round == 0 ? 0.0 : g.between(-90, 90), 0), state, input, 0, points};
+    found[0] = E::torque(p, at), E::state_rates(p, at, found + 1);
+    for (int o = 0; o < 2 && round > 0; ++o) CHECK(found[o].d[0] == first[o].d[0] && found[o].d[1] == first[o].d[1]);
+    CHECK(found[1].d[1] == 0);
+    for (int o = 0; o < 2; ++o) first[o] = found[o];
+  }
+}
+
 void torque_kinds_all() {
   for (int kind = 0; kind < torque_kinds; ++kind) {
     visit_torque(kind, [kind](auto tag) {
@@ -187,6 +206,7 @@ void torque_kinds_all() {
         if constexpr (HeatingElement<E>) out[E::ways + E::states] = E::heat(p, at);
       };
       over_arguments<E>(call, fields, E::inputs, E::states, E::ways + E::states + HeatingElement<E>);
+      if constexpr (LinearElement<E>) is_a_line<E>(fields);
     });
   }
 }

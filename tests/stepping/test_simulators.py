@@ -97,6 +97,26 @@ def test_fixed_steps_have_the_bits_of_single_ones(threads: int) -> None:
     assert not sims.failed.any()
 
 
+def test_a_signal_that_is_set_alone_leaves_the_others_where_they_are() -> None:
+    """With fixed steps: beside a table with knots and a wave, and as where others are set with it to what they were."""
+    d = joint()
+    knots = cw.Table([(0.0, 0.0), (0.0035, 3.0), (0.006, -2.0), (0.0105, 1.0)])
+    d.add(cw.Torque("load", shaft=d.shafts[2], torque=knots))
+    d.add(cw.Torque("shaker", shaft=d.shafts[1], torque=cw.Sine(amplitude=2.0, frequency=40.0)))
+    alone, among = (cw.Simulators(d, 3, method="fixed", step=1e-3) for _ in range(2))
+    scatter = np.random.default_rng(5)
+    for _ in range(20):
+        torques = scatter.uniform(-0.3, 0.3, 3)
+        alone["motor.torque"] = torques
+        among.set({"motor.torque": torques, "seal.normal_force": 1.0})
+        alone.advance(1e-3)
+        among.advance(1e-3)
+        names = ["rotor.speed", "link.speed", "load.torque", "shaker.torque", "motor.torque", "seal.capacity"]
+        np.testing.assert_array_equal(alone[names], among[names])
+    assert len(set(alone["load.torque"])) == 1
+    assert alone["load.torque"][0] == 1.0
+
+
 def test_what_varies_is_that_of_a_changed_system() -> None:
     system, count = joint().assemble(), 20
     inertias, ratios = np.linspace(0.3, 0.9, count), np.tile([80.0, 100.0], count // 2)

@@ -12,6 +12,29 @@ namespace clutchwork {
 
 template <class T>
 struct Workspace {
+  // what runs between events read in addition
+  EventContext<T> event_context;
+  Held<T> held;
+  CoupledMemory<T> coupled;
+  SetMemory<T> set;
+  ProblemMemory<T> problem;
+  Decision<T> decision;
+  Reduced<T> reduced;
+  SparseRows<T> rows;
+  Shared<T> shared;
+  Stages<T> stages;
+  Full<T> full;
+  Ratios<T> ratios;
+  StepEnd<T> step_start{}, step_end{};
+  Output<T> out;
+  [[no_unique_address]] Moved<T> moved;
+
+  // from here on what steps of one length read is close together: where many runs go on side by side, less of each
+  // passes through the caches
+  Guards guard;
+  Detail detail;
+  EventBuffer events;
+  Poll poll;
   SystemOf<Given<T>> sys{};
   RowLayout row{System{}};
   Options options;
@@ -37,30 +60,11 @@ struct Workspace {
 
   Signals<T> in;
   Contacts<T> contact;
-  EventContext<T> event_context;
-  Held<T> held;
   Loads<T> loads;
-  CoupledMemory<T> coupled;
-  SetMemory<T> set;
-  ProblemMemory<T> problem;
-  Decision<T> decision;
   Geometry<T> geometry;
-  Reduced<T> reduced;
-  SparseRows<T> rows;
   Jacobian<T> jacobian;
-  Shared<T> shared;
-  Stages<T> stages;
-  Full<T> full;
-  Ratios<T> ratios;
   Fixed<T> fixed;
-  StepEnd<T> step_start{}, step_end{};
-  Guards guard;
   Observed<T> observed;
-  Output<T> out;
-  EventBuffer events;
-  [[no_unique_address]] Moved<T> moved;
-  Detail detail;
-  Poll poll;
 };
 
 /// The points of the curves that components read.
@@ -83,9 +87,10 @@ void lay_out(W& ws, A& a) {
   a.keep(ws.piece, n.directions, -(1ll << 31), (1ll << 31) - 1), a.keep(ws.heading, n.directions, backward, forward);
   a.take(ws.branch, n.directions), a.take(ws.branch_of, n.directions);
   auto each = [&](auto&... part) { (std::remove_reference_t<decltype(part)>::lay_out(part, a, n), ...); };
-  each(ws.in, ws.contact, ws.event_context, ws.held, ws.loads, ws.coupled, ws.set, ws.problem, ws.decision, ws.geometry,
-       ws.reduced, ws.rows, ws.jacobian, ws.shared, ws.stages, ws.full, ws.ratios, ws.fixed, ws.step_start, ws.step_end,
-       ws.guard, ws.observed, ws.out, ws.events, ws.moved);
+  // what steps of one length read comes first, so that it is close together
+  each(ws.in, ws.contact, ws.loads, ws.fixed, ws.observed, ws.jacobian, ws.geometry, ws.event_context, ws.held,
+       ws.coupled, ws.set, ws.problem, ws.decision, ws.reduced, ws.rows, ws.shared, ws.stages, ws.full, ws.ratios,
+       ws.step_start, ws.step_end, ws.guard, ws.out, ws.events, ws.moved);
 }
 
 /// Lay the arrays of a workspace into memory; returns the size needed.

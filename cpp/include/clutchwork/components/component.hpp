@@ -112,6 +112,11 @@ concept TorqueElement = requires(const typename E::template Params<double>& p, c
   { E::inputs } -> std::convertible_to<int>;
 };
 
+/// Torque element whose torque and the rate of the one state that it may have are linear in its rate and that state,
+/// with slopes that inputs do not change; the rate of the state follows from the rate alone.
+template <class E>
+concept LinearElement = TorqueElement<E> && requires { requires E::linear; };
+
 /// Element of two ways whose rates a ratio of its states and inputs ties together: rate 1 = ratio rate 2.
 template <class E>
 concept TransmissionElement =
@@ -151,10 +156,11 @@ concept LimitedContact = requires(const typename E::template Params<double>& p, 
 };
 
 /// Contact whose capacity follows the torque of its own gear row: what holds against slip in a direction, over that
-/// load; `at.rate` is the size of the slip.
+/// load; `at.rate` is the size of the slip. `steady`: neither slip nor inputs change it.
 template <class E>
 concept LoadedContact = requires(const typename E::template Params<double>& p, const At<double>& at) {
   { E::bound(p, at, 1) } -> std::same_as<Bound<double>>;
+  { E::steady(p) } -> std::same_as<bool>;
 };
 
 /// Freewheel that gives way at a torque.

@@ -337,7 +337,7 @@ void rest_fresh(Workspace<T>& ws) {
 template <class T>
 void load_inputs(Workspace<T>& ws, double t) {
   ws.in.n_varying = 0;
-  ws.in.next_knot = infinity;
+  ws.in.next_knot = infinity, ws.in.alone = -1;
   for (int i = 0; i < ws.sys.inputs; ++i) {
     seek(ws, i, t);
     ws.in.signal[i].fresh = false;

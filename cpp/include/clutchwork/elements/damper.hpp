@@ -9,7 +9,7 @@ struct Damper : declared::Damper {
   struct Params {
     T damping;  ///< [N m s/rad]
   };
-  static constexpr bool lanes = true;
+  static constexpr bool lanes = true, linear = true;
 
   template <class T, class S>
   static S torque(const Params<T>& p, const At<S>& at) {

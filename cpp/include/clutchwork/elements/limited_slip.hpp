@@ -23,6 +23,10 @@ struct LimitedSlip : declared::LimitedSlip {
   static Bound<S> bound(const Params<T>& p, const At<S>&, int) {
     return {{S(p.drive * T(-2)), S(p.coast * T(2))}, {S(p.preload), S(p.preload)}};
   }
+  template <class T>
+  static bool steady(const Params<T>&) {
+    return true;
+  }
 };
 
 }  // namespace clutchwork::elements

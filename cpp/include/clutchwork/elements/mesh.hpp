@@ -16,6 +16,10 @@ struct MeshFriction {
     return LossTable{p.loss_table}.on(at.points, at.piece, at.rate).bound(direction);
   }
   template <class P>
+  static bool steady(const P& p) {
+    return LossTable{p.loss_table}.rows() == 1;
+  }
+  template <class P>
   static int edges(const P& p) {
     return LossTable{p.loss_table}.edges();
   }

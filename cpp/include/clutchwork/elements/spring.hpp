@@ -10,7 +10,7 @@ struct Spring : declared::Spring {
     T stiffness;      ///< [N m/rad]
     T initial_twist;  ///< [rad]
   };
-  static constexpr bool lanes = true;
+  static constexpr bool lanes = true, linear = true;
 
   template <class T, class S>
   static S torque(const Params<T>&, const At<S>& at) {

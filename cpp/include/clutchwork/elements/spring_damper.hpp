@@ -11,7 +11,7 @@ struct SpringDamper : declared::SpringDamper {
     T damping;        ///< [N m s/rad]
     T initial_twist;  ///< [rad]
   };
-  static constexpr bool lanes = true;
+  static constexpr bool lanes = true, linear = true;
 
   template <class T, class S>
   static S torque(const Params<T>& p, const At<S>& at) {

@@ -7,7 +7,7 @@ namespace clutchwork::elements {
 struct Torque : declared::Torque {
   template <class T>
   struct Params {};
-  static constexpr bool lanes = true;
+  static constexpr bool lanes = true, linear = true;
 
   template <class T, class S>
   static S torque(const Params<T>&, const At<S>& at) {

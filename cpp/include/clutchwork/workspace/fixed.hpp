@@ -9,6 +9,43 @@ namespace clutchwork {
 /// Up to so many speeds their rows are whole.
 inline constexpr int most_whole_speeds = 4;
 
+/// What a contact holds at inputs that it has seen: found again where these, or its fault, are others.
+template <class T>
+struct Hold {
+  T load, torque[2];  ///< load; static torque against slip backward, then forward
+  T low, high;        ///< slips between which its present piece is
+  int fault;          ///< what had failed in it, -1: nothing is known
+};
+
+/// What is linear in its rate and in the one state that it may have: torque without both, slopes, rate of the state.
+template <class T>
+struct Line {
+  T offset, by_rate, by_state, state_by_rate;
+};
+
+/// What a step goes through, listed once a run, so that it visits no more than there is.
+template <class T>
+struct FixedPlan {
+  int n_linear = 0, n_bent = 0, n_bounded = 0, n_one_way = 0, n_rigid = 0, n_stops = 0, n_crossing = 0;
+  int *linear = nullptr, *bent = nullptr;  ///< directions whose torques are linear functions; other functions
+  int *bounded = nullptr, *rigid = nullptr, *stops = nullptr, *crossing = nullptr;
+  int n_unsteady = 0;
+  int* unsteady = nullptr;  ///< loads whose bounds follow slips or inputs
+  int* one_way = nullptr;   ///< contacts that block one way, at times at least
+  int* blocks = nullptr;    ///< of each contact: whether it is one of these
+  int* smooth = nullptr;    ///< of each direction: its torque is a function of its rate and states
+  Line<T>* line = nullptr;  ///< of each direction that is linear
+  Hold<T>* hold = nullptr;  ///< of each contact
+  T* seen = nullptr;        ///< of each reference: its value where that was found
+
+  template <class P, class A>
+  static void lay_out(P& p, A& a, std::int64_t nd, std::int64_t nc, std::int64_t nl, std::int64_t references) {
+    a.take(p.linear, nd), a.take(p.bent, nd), a.take(p.crossing, nd), a.take(p.smooth, nd), a.take(p.bounded, nc);
+    a.take(p.rigid, nc), a.take(p.stops, nc), a.take(p.one_way, nc), a.take(p.blocks, nc), a.take(p.unsteady, nl);
+    a.take(p.line, nd), a.take(p.hold, nc), a.scratch(p.seen, references);
+  }
+};
+
 template <class T>
 struct Fixed {
   // the history, of which saved states have a copy
@@ -35,12 +72,13 @@ struct Fixed {
   bool has_massless = false;  ///< some speeds have no inertia
   int* massless = nullptr;    ///< of each direction: whether some of these are in its rate
   int* bends = nullptr;       ///< of each direction: its piece follows from where it is
-  int* two_sided = nullptr;   ///< of each contact: it resists both directions differently
-  T* factor = nullptr;        ///< Cholesky factor of the matrix of a step, by rows
-  T* answer = nullptr;        ///< change of the speeds by a unit impulse of each contact
-  T* mobility = nullptr;      ///< of the contacts, by rows: change of slips by unit impulses
-  T* rate_rows = nullptr;     ///< of few speeds: rates of directions by them
-  T* node_rows = nullptr;     ///< and speeds of nodes
+  FixedPlan<T> plan;
+  int* two_sided = nullptr;  ///< of each contact: it resists both directions differently
+  T* factor = nullptr;       ///< Cholesky factor of the matrix of a step, by rows
+  T* answer = nullptr;       ///< change of the speeds by a unit impulse of each contact
+  T* mobility = nullptr;     ///< of the contacts, by rows: change of slips by unit impulses
+  T* rate_rows = nullptr;    ///< of few speeds: rates of directions by them
+  T* node_rows = nullptr;    ///< and speeds of nodes
 
   // scratch of a step
   T *ahead = nullptr, *state_ahead = nullptr, *given_ahead = nullptr;  ///< speeds and states predicted for its middle
@@ -52,7 +90,7 @@ struct Fixed {
   T *start_rate = nullptr, *rate_change = nullptr;   ///< of each direction
   T* gained = nullptr;                               ///< of each direction: rate that changes of the speeds make
   T* mean = nullptr;                                 ///< of each direction: torque
-  T *node_start = nullptr, *node_gain = nullptr;     ///< of each node: speed at the start, its change
+  T *node_end = nullptr, *node_gain = nullptr;       ///< of each node: speed at the end, its change
   T *impulse = nullptr, *gradient = nullptr, *lower = nullptr, *upper = nullptr, *weight = nullptr;
   T *end_slip = nullptr, *solved = nullptr, *free_factor = nullptr;
   T *kinetic = nullptr, *limit = nullptr;  ///< of each contact: what resists slip backward, then forward [N m]
@@ -62,6 +100,7 @@ struct Fixed {
 
   // of each load: its impulse by changes of speeds, of prescribed ones, by impulses of contacts; without these
   T *load_by_speed = nullptr, *load_by_given = nullptr, *load_reach = nullptr, *load_free = nullptr;
+  T* load_now = nullptr;                          ///< of each load: its impulse with the present ones of contacts
   T* load_size = nullptr;                         ///< of each load: the sum of the sizes of what it is without these
   Bound<T>* load_bound = nullptr;                 ///< of each load: what holds against slip backward, then forward
   T *load_matrix = nullptr, *load_off = nullptr;  ///< of those at a bound: their system, what they are off
@@ -75,11 +114,12 @@ struct Fixed {
     const auto nc = has ? n.contacts : 0, np = has ? n.prescribed : 0;
     a.take(p.gain, nv), a.take(p.state_gain, ns), a.take(p.given_gain, np), a.take(p.given, np);
     a.take(p.kept, nd), a.take(p.torque, nd), a.take(p.held, 2 * nc);
+    FixedPlan<T>::lay_out(p.plan, a, nd, nc, has ? n.loads : 0, has ? n.references : 0);
     a.take(p.bends, nd), a.take(p.massless, nd), a.take(p.two_sided, nc);
     a.scratch(p.factor, nv * nv), a.scratch(p.answer, nc * nv), a.scratch(p.mobility, nc * nc);
     const auto nn = has ? n.nodes : 0, whole = nv <= most_whole_speeds ? nv : 0;
     a.scratch(p.rate_rows, nd * whole), a.scratch(p.node_rows, nn * whole);
-    a.scratch(p.gained, nd), a.scratch(p.node_start, nn), a.scratch(p.node_gain, nn);
+    a.scratch(p.gained, nd), a.scratch(p.node_end, nn), a.scratch(p.node_gain, nn);
     a.scratch(p.ahead, nv), a.scratch(p.state_ahead, ns), a.scratch(p.change, nv), a.scratch(p.state_change, ns);
     a.scratch(p.given_change, np), a.scratch(p.given_ahead, np), a.scratch(p.force, nd), a.scratch(p.slope, nd),
         a.scratch(p.predicted, nd);
@@ -90,7 +130,7 @@ struct Fixed {
     a.scratch(p.kinetic, 2 * nc), a.scratch(p.limit, 2 * nc), a.scratch(p.share, nc), a.scratch(p.instant, nc);
     const auto nl = has ? n.loads : 0;
     a.scratch(p.load_by_speed, nl * nv), a.scratch(p.load_by_given, nl * np), a.scratch(p.load_reach, nl * nc);
-    a.scratch(p.load_free, nl), a.scratch(p.load_size, nl), a.scratch(p.load_bound, 2 * nl),
+    a.scratch(p.load_free, nl), a.scratch(p.load_now, nl), a.scratch(p.load_size, nl), a.scratch(p.load_bound, 2 * nl),
         a.scratch(p.load_matrix, nl * nl), a.scratch(p.load_off, nl);
     a.take(p.follower, nl), a.take(p.load_line, 2 * nl), a.take(p.segment, has ? n.signals : 0), a.take(p.fault, nc);
     a.take(p.side, nc), a.take(p.list, nc), a.take(p.box, nc), a.take(p.mode, nc);

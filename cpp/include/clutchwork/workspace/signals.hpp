@@ -36,6 +36,8 @@ struct Signals {
   T *u = nullptr, *du = nullptr;  ///< value of each reference; its time derivative where it is a signal or a rate
   double time = -infinity;        ///< [s] of the values
   double next_knot = infinity;    ///< [s]
+  int alone = -1;                 ///< the only signal that was set since the inputs were loaded; -1: none, or more
+  double knot_behind = infinity;  ///< [s] next knot without that
   bool expected = false;          ///< values may be set between calls
   T *prescribed = nullptr, *prescribed_slope = nullptr, *prescribed_before = nullptr;
 

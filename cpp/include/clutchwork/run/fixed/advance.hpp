@@ -6,11 +6,36 @@
 /// A run with fixed steps: docs/theory/fixed-steps.md
 namespace clutchwork::fixed {
 
+/// Whether all numbers of a row and its kinetic energy are finite for sure: the sum of all of them is.
+inline bool is_sound(const Run& ws, const double* row) {
+  if constexpr (!has_few_sizes) return false;
+  const double* speed = row + ws.row.speed;
+  Two sum = {}, energy = {};
+  double rest = 0;
+  auto add = [&](int i, auto as) {
+    if constexpr (sizeof(as) == sizeof(Two))
+      sum += take<Two>(row + i);
+    else
+      rest += row[i];
+  };
+  auto add_energy = [&](int n, auto as) {
+    using V = decltype(as);
+    const V w = take<V>(speed + n), part = take<V>(ws.sys.inertia + n) * w * w;
+    if constexpr (sizeof(as) == sizeof(Two))
+      energy += part;
+    else
+      rest += part;
+  };
+  in_pairs_alone(int(ws.row.size), add), in_pairs_alone(int(ws.sys.nodes), add_energy);
+  sum += energy;
+  return (rest + sum[0] + sum[1]) * 0 == 0;
+}
+
 /// One row, at the share s of a step; `length`, `mode`: as in fill_row.
 inline Status emit(Run& ws, const Look& look, double t, double s, double length, const int* mode, Sink& sink) {
   double* row = sink.rows + ws.row.size * sink.at;
   fill_row(ws, look, s, length, mode, row);
-  if (!is_finite(ws, row)) return Status::not_finite;
+  if (!is_sound(ws, row) && !is_finite(ws, row)) return Status::not_finite;
   if (sink.steps > 0) sink.times[sink.at] = t;
   ++sink.at;
   return Status::running;
@@ -115,8 +140,10 @@ inline Status finish_step(Run& ws, double h, double end, Sink& sink) {
   if (shown != Status::running) return shown;
   report(ws, look, end);
   cross_pieces(ws);
-  for (int d = 0; d < ws.n_directions; ++d) f.torque[d] = f.mean[d];
-  for (int i = 0; i < 2 * ws.sys.contacts; ++i) f.held[i] = f.limit[i];
+  auto copy = [](int n, const double* from, double* to) {
+    in_pairs(n, [&](int i, auto as) { put(to + i, take<decltype(as)>(from + i)); });
+  };
+  copy(ws.n_directions, f.mean, f.torque), copy(2 * int(ws.sys.contacts), f.limit, f.held);
   ws.time = f.time = end, f.fresh = 0;
   return Status::running;
 }
@@ -161,7 +188,8 @@ inline Status take_step(Run& ws, double t_end, Sink& sink) {
   const double step = ws.options.step, grid = f.origin + double(f.count + 1) * step;
   const bool last = grid > t_end - 1e-9 * step, cut = grid > t_end + 1e-9 * step;
   const double end = last ? t_end : grid, h = cut || f.impacts > 0 ? end - ws.time : step;
-  keep_outside(ws);
+  // others are made once
+  if (f.plan.n_one_way > 0) keep_outside(ws);
   Status status = make_step(ws, ws.time, h, end);
   if (status != Status::running) return status;
   const Meeting met = first_meeting(ws, h, slip_tolerance(ws));

@@ -1,5 +1,5 @@
 #pragma once
-#include <clutchwork/components/scalar.hpp>
+#include <clutchwork/run/fixed/products.hpp>
 
 /// Impulses of all contacts over one step, within their bounds, by a primal-dual active set:
 /// docs/theory/fixed-steps.md
@@ -20,10 +20,10 @@ struct Boxes {
 inline constexpr int most_sets = 45;
 
 /// W x + g of contact i.
-inline double slope_of(const Boxes& p, int i) {
+CLUTCHWORK_INLINE double slope_of(const Boxes& p, int n, int i) {
   double s = p.gradient[i];
-  const double* row = p.mobility + i * p.n;
-  for (int j = 0; j < p.n; ++j) s += row[j] * p.x[j];
+  const double* row = p.mobility + i * n;
+  for (int j = 0; j < n; ++j) s += row[j] * p.x[j];
   return s;
 }
 
@@ -58,55 +58,66 @@ inline void solve_free(const Boxes& p, int m) {
   }
 }
 
+/// Slopes of the m free contacts solved for.
+CLUTCHWORK_INLINE void solve_list(const Boxes& p, int n, int m) {
+  for (int a = 0; a < m; ++a) p.solved[a] = slope_of(p, n, p.list[a]);
+  solve_free(p, m);
+}
+
 /// Solve for the free contacts where the others are at their bounds; how many are free, -1: it failed.
-inline int solve_set(const Boxes& p) {
+CLUTCHWORK_INLINE int solve_set(const Boxes& p, int n) {
   int m = 0;
-  for (int i = 0; i < p.n; ++i) {
+  for (int i = 0; i < n; ++i) {
     if (p.side[i] == 0) p.list[m++] = i;
     p.x[i] = p.side[i] == 0 ? 0.0 : p.side[i] > 0 ? p.upper[i] : p.lower[i];
   }
+  if (m == 0) return 0;
   if (!factor_free(p, m)) return -1;
-  for (int a = 0; a < m; ++a) p.solved[a] = slope_of(p, p.list[a]);
-  solve_free(p, m);
+  solve_list(p, n, m);
   for (int a = 0; a < m; ++a) p.x[p.list[a]] = p.solved[a];
   return m;
 }
 
-/// Where contact i should be, seen from the present set; its present side where that is right.
-inline int wanted_side(const Boxes& p, int i) {
+/// Where contact i should be, seen from the present set; its present side where that is right. Finds its slope.
+CLUTCHWORK_INLINE int wanted_side(const Boxes& p, int n, int i) {
   if (p.side[i] == 0) return p.x[i] < p.lower[i] ? -1 : p.x[i] > p.upper[i] ? 1 : 0;
+  const double* row = p.mobility + i * n;
+  double s = p.gradient[i], size = abs(s);
+  for (int j = 0; j < n; ++j) {
+    const double part = row[j] * p.x[j];
+    s += part, size += abs(part);
+  }
+  p.slope[i] = s;
   if (!(p.lower[i] < p.upper[i])) return p.side[i];
-  const double* row = p.mobility + i * p.n;
-  double s = p.gradient[i] + p.weight[i] * p.x[i], size = abs(p.gradient[i]);
-  for (int j = 0; j < p.n; ++j) s += row[j] * p.x[j], size += abs(row[j] * p.x[j]);
   // what round-off makes of a slip decides nothing
-  return s * p.side[i] > 1e-14 * size ? 0 : p.side[i];
+  const double slip = s + p.weight[i] * p.x[i];
+  return (p.side[i] > 0 ? slip : -slip) > 1e-14 * size ? 0 : p.side[i];
 }
 
 /// Take the weight out again: one step with the exact matrix, within the bounds.
-inline void refine_once(const Boxes& p, int m) {
-  for (int a = 0; a < m; ++a) p.solved[a] = slope_of(p, p.list[a]);
-  solve_free(p, m);
+CLUTCHWORK_INLINE void refine_once(const Boxes& p, int n, int m) {
+  solve_list(p, n, m);
   for (int a = 0; a < m; ++a) {
     const int i = p.list[a];
     p.x[i] = smaller(larger(p.x[i] + p.solved[a], p.lower[i]), p.upper[i]);
   }
+  for (int i = 0; i < n; ++i) p.slope[i] = slope_of(p, n, i);
 }
 
-/// How many sets were tried, -1: none of them was right. All that is wrong changes at once while that makes less of it,
-/// else the last one alone, which ends with any matrix of this kind.
-inline int solve(const Boxes& p) {
-  int fewest = p.n + 1, patience = 3;
+/// How many sets were tried, of N contacts, or as many as there are.
+template <int N>
+int solve_sized(const Boxes& p) {
+  const int n = N > 0 ? N : p.n;
+  int fewest = n + 1, patience = 3;
   for (int tried = 1; tried <= most_sets; ++tried) {
-    const int m = solve_set(p);
+    const int m = solve_set(p, n);
     if (m < 0) return -1;
     int wrong = 0, last = -1;
-    for (int i = 0; i < p.n; ++i) {
-      if (wanted_side(p, i) != p.side[i]) ++wrong, last = i;
+    for (int i = 0; i < n; ++i) {
+      if (wanted_side(p, n, i) != p.side[i]) ++wrong, last = i;
     }
     if (wrong == 0) {
-      refine_once(p, m);
-      for (int i = 0; i < p.n; ++i) p.slope[i] = slope_of(p, i);
+      if (m > 0) refine_once(p, n, m);
       return tried;
     }
     if (wrong < fewest) {
@@ -115,14 +126,30 @@ inline int solve(const Boxes& p) {
       --patience;
     }
     if (patience < 0) {
-      p.side[last] = wanted_side(p, last);
+      p.side[last] = wanted_side(p, n, last);
       continue;
     }
     // all are judged by the same solution
-    for (int i = 0; i < p.n; ++i) p.list[i] = wanted_side(p, i);
-    for (int i = 0; i < p.n; ++i) p.side[i] = p.list[i];
+    for (int i = 0; i < n; ++i) p.list[i] = wanted_side(p, n, i);
+    for (int i = 0; i < n; ++i) p.side[i] = p.list[i];
   }
   return -1;
+}
+
+/// How many sets were tried, -1: none of them was right. All that is wrong changes at once while that makes less of it,
+/// else the last one alone, which ends with any matrix of this kind.
+inline int solve(const Boxes& p) {
+  if constexpr (has_few_sizes) {
+    switch (p.n) {
+      case 1:
+        return solve_sized<1>(p);
+      case 2:
+        return solve_sized<2>(p);
+      case 3:
+        return solve_sized<3>(p);
+    }
+  }
+  return solve_sized<0>(p);
 }
 
 }  // namespace clutchwork::fixed

@@ -12,13 +12,53 @@ namespace clutchwork::fixed {
 /// How many rounds of boxes there are at most: a contact goes from one box to the other twice, and loads settle.
 inline constexpr int most_rounds = 4, most_loaded_rounds = 12;
 
+/// What a contact holds at its present inputs.
+[[gnu::noinline]] inline void find_hold(Run& ws, int c) {
+  Fixed<double>& f = ws.fixed;
+  const Branch<double>& b = ws.branch[ws.sys.elements + c];
+  Hold<double>& hold = f.plan.hold[c];
+  double* seen = f.plan.seen + ws.sys.contact_input[c];
+  for (int i = 0; i < b.inputs; ++i) seen[i] = b.input[i];
+  seen = f.plan.seen + ws.sys.contact_law_input[c];
+  for (int i = 0; i < b.law_inputs; ++i) seen[i] = b.law_input[i];
+  hold.fault = ws.contact.fault[c];
+  hold.load = load_of(ws, c);
+  if (ws.loads.of[c] >= 0) return;
+  hold.torque[1] = static_torque(ws, c, forward);
+  hold.torque[0] = f.two_sided[c] ? static_torque(ws, c, backward) : hold.torque[1];
+}
+CLUTCHWORK_INLINE const Hold<double>& hold_of(Run& ws, int c) {
+  const Branch<double>& b = ws.branch[ws.sys.elements + c];
+  const Hold<double>& hold = ws.fixed.plan.hold[c];
+  const double* seen = ws.fixed.plan.seen + ws.sys.contact_input[c];
+  bool same = hold.fault == ws.contact.fault[c];
+  for (int i = 0; i < b.inputs; ++i) same = same && seen[i] == b.input[i];
+  seen = ws.fixed.plan.seen + ws.sys.contact_law_input[c];
+  for (int i = 0; i < b.law_inputs; ++i) same = same && seen[i] == b.law_input[i];
+  if (!same) find_hold(ws, c);
+  return hold;
+}
+
 /// Which contacts are pressed in the middle of the step.
 inline void see_loads(Run& ws) {
   for (int c = 0; c < ws.sys.contacts; ++c) {
     Branch<double>& b = ws.branch[ws.sys.elements + c];
-    ws.contact.pressed[c] = b.pressed = load_of(ws, c) > 0;
-    ws.contact.loaded[c] = is_closed(ws, c);
+    b.pressed = hold_of(ws, c).load > 0;
+    ws.contact.pressed[c] = b.pressed;
+    ws.contact.loaded[c] = b.pressed || (ws.fixed.plan.blocks[c] != 0 && contact_one_way(ws, c)) ||
+                           (ws.contact.fault[c] == cannot_unlock && ws.contact.mode[c] == locked);
   }
+}
+
+/// The piece of the law of a contact at a slip; and between which slips it stays there, but where it has others to
+/// look at.
+[[gnu::noinline]] inline void find_piece(Run& ws, int c, double size) {
+  const int d = int(ws.sys.elements) + c, piece = sliding_piece(ws, d, size);
+  Hold<double>& hold = ws.fixed.plan.hold[c];
+  ws.piece[d] = ws.branch[d].piece = piece;
+  if (is_settling_law(ws.sys.contact_law[c])) return;
+  hold.low = piece > 0 ? edge_at(ws, d, piece - 1) : -infinity;
+  hold.high = piece < edge_count(ws, d) ? edge_at(ws, d, piece) : infinity;
 }
 
 /// Kinetic and static torque of a contact in the middle of the step, against slip backward and forward.
@@ -36,16 +76,17 @@ inline void see_contact(Run& ws, int c) {
   }
   if (!b.pressed || b.compliant) return;
   const double size = mode == locked || mode == open ? 0.0 : larger(mode * f.predicted[d], 0.0);
-  if (f.bends[d] == settling) ws.piece[d] = b.piece = sliding_piece(ws, d, size);
+  const Hold<double>& hold = f.plan.hold[c];
+  if (f.bends[d] == settling && !(hold.low <= size && size < hold.high)) find_piece(ws, c, size);
   if (ws.loads.of[c] >= 0) return;
   b.sign = forward;
   kinetic[1] = larger(-contact_torque(ws, b, size, ws.state, ws.observed.state_rates), 0.0);
   kinetic[0] = kinetic[1];
-  limit[0] = limit[1] = larger(static_torque(ws, c, forward), kinetic[1]);
+  limit[0] = limit[1] = larger(hold.torque[1], kinetic[1]);
   if (!f.two_sided[c]) return;
   b.sign = backward;
   kinetic[0] = larger(contact_torque(ws, b, -size, ws.state, ws.observed.state_rates), 0.0);
-  limit[0] = larger(static_torque(ws, c, backward), kinetic[0]);
+  limit[0] = larger(hold.torque[0], kinetic[0]);
 }
 
 /// Bounds of the impulse of a contact.
@@ -58,10 +99,10 @@ inline void set_box(Run& ws, int c, double h) {
     return f.box[c] == slips_on ? kinetic[way] + f.share[c] * (limit[way] - kinetic[way]) : kinetic[way];
   };
   f.lower[c] = -h * torque(1), f.upper[c] = h * torque(0);
-  const int way = ws.contact.loaded[c] ? free_way(ws, c) : 0;
+  const int way = f.plan.blocks[c] != 0 && ws.contact.loaded[c] ? free_way(ws, c) : 0;
   if (way > 0) f.upper[c] = h * freewheel_limit(ws, c);
   if (way < 0) f.lower[c] = -infinity;
-  if (is_rigid(ws, c)) f.lower[c] = f.upper[c] = 0;
+  if (joins_prescribed(ws, c)) f.lower[c] = f.upper[c] = 0;
 }
 
 /// Where in the step a contact breaks away that was locked in the last one, -1/2 to 1/2: there the torque that would
@@ -75,6 +116,17 @@ inline double share_at_limit(const Run& ws, int c, int way, double h) {
   const double over = needed - f.limit[2 * c + way], rise = over - (before - f.held[2 * c + way]);
   if (!(rise > 0)) return 0;
   return larger(-0.5, smaller(0.5, 0.5 - 0.5 * (1 + f.before / h) * over / rise));
+}
+
+/// Whether a contact that ends at a bound says otherwise than its box, which may be the only one that it has.
+CLUTCHWORK_INLINE bool any_may_change(const Fixed<double>& f, int ne, int nc) {
+  if constexpr (!has_few_sizes) return true;
+  for (int c = 0; c < nc; ++c) {
+    if (f.side[c] == 0) continue;
+    if (f.box[c] == sliding ? f.start_rate[ne + c] * f.end_slip[c] < 0 : f.box[c] == at_rest && f.end_slip[c] != 0)
+      return true;
+  }
+  return false;
 }
 
 /// Contacts whose torques say otherwise than their boxes: they get the other one. Whether there are any.
@@ -97,6 +149,31 @@ inline bool change_boxes(Run& ws, double h) {
   return any;
 }
 
+/// Whether all contacts slip on as they did, each far enough from rest that the little mobility of rule 1 does not
+/// count: then this is the solution, which the first set that is tried would find. Loads have their bounds already.
+inline bool slides_on(Run& ws) {
+  Fixed<double>& f = ws.fixed;
+  const int ne = int(ws.sys.elements), nc = int(ws.sys.contacts);
+  for (int c = 0; c < nc; ++c) {
+    const int mode = ws.contact.mode[c];
+    if (mode == locked || mode == open) return false;
+    const bool has_room = f.lower[c] < f.upper[c];
+    f.side[c] = has_room ? -mode : 1;
+    f.impulse[c] = f.side[c] < 0 ? f.lower[c] : f.upper[c];
+  }
+  for (int c = 0; c < nc; ++c) {
+    const double* row = f.mobility + c * nc;
+    double slip = f.gradient[c];
+    for (int o = 0; o < nc; ++o) slip += row[o] * f.impulse[o];
+    f.end_slip[c] = slip;
+    if (!(f.lower[c] < f.upper[c])) continue;
+    const int mode = ws.contact.mode[c];
+    if (!(mode * slip > 1e-3 * row[c] * abs(f.impulse[c])) || mode * f.start_rate[ne + c] < 0) return false;
+  }
+  ++ws.statistics.evaluations;
+  return true;
+}
+
 /// Impulses of all contacts, for slips at the end without them in `gradient`. False: they were not found.
 inline bool find_impulses(Run& ws, double h, double tolerance) {
   Fixed<double>& f = ws.fixed;
@@ -106,20 +183,30 @@ inline bool find_impulses(Run& ws, double h, double tolerance) {
     f.box[c] = ws.contact.mode[c] == locked || ws.contact.mode[c] == open ? at_rest : sliding;
     set_box(ws, c, h);
   }
-  begin_loads(ws, h);
+  const bool found = ws.sys.loads > 0 && slip_with_load(ws, h);
+  if ((found || ws.sys.loads == 0) && f.plan.n_rigid == 0 && slides_on(ws)) return true;
+  if (ws.sys.loads > 0 && !found) begin_loads(ws, h);
+  int free = 0;
   for (int c = 0; c < nc; ++c) {
     const int mode = ws.contact.mode[c];
     // no guess is at a bound that is not there
     f.side[c] = mode == forward && f.lower[c] > -infinity ? -1 : mode == backward && f.upper[c] < infinity ? 1 : 0;
+    free += f.side[c] == 0;
     const double most = larger(-f.lower[c], f.upper[c]);
     if (most < infinity) largest = larger(largest, most);
   }
   for (int c = 0; c < nc; ++c) {
-    const double own = larger(-f.lower[c], f.upper[c]), ratio = own > 0 && own < infinity ? largest / own : 1;
-    f.weight[c] = 1e-10 * f.mobility[c * nc + c] * smaller(ratio, 1e6);
+    const double own = larger(-f.lower[c], f.upper[c]);
+    const double ratio = own > 0 && own < largest ? smaller(largest / own, 1e6) : 1;
+    f.weight[c] = 1e-10 * f.mobility[c * nc + c] * ratio;
   }
   const Boxes boxes{nc,        f.mobility, f.gradient, f.lower,  f.upper,       f.weight,
                     f.impulse, f.end_slip, f.side,     f.solved, f.free_factor, f.list};
+  // where all contacts slip, bounds follow their loads before the first solution
+  if (ws.sys.loads > 1 && free == 0 && f.plan.n_rigid == 0) {
+    for (int c = 0; c < nc; ++c) f.impulse[c] = f.side[c] < 0 ? f.lower[c] : f.upper[c];
+    follow_loads(ws, boxes, h, tolerance);
+  }
   for (int round = 0; round < rounds; ++round) {
     for (int c = 0; c < nc; ++c) {
       if (!(f.lower[c] < f.upper[c])) f.side[c] = 1;
@@ -127,7 +214,7 @@ inline bool find_impulses(Run& ws, double h, double tolerance) {
     const int tried = solve(boxes);
     if (tried < 0) return false;
     ws.statistics.evaluations += tried;
-    const bool changed = change_boxes(ws, h);
+    const bool changed = any_may_change(f, int(ws.sys.elements), nc) && change_boxes(ws, h);
     if (!(ws.sys.loads > 0 && follow_loads(ws, boxes, h, tolerance)) && !changed) return true;
   }
   // boxes that go on changing have one answer or the other; loads must have found theirs
@@ -142,7 +229,7 @@ inline int mode_behind(const Run& ws, int c, double tolerance) {
   if (is_stop(ws, c)) return ws.contact.loaded[c] && free_way(ws, c) * f.end_slip[c] <= tolerance ? locked : open;
   if (ws.contact.compliant[c] && !contact_one_way(ws, c)) return mode;
   const double slip = f.end_slip[c];
-  if (is_rigid(ws, c) || !ws.contact.loaded[c]) {
+  if (joins_prescribed(ws, c) || !ws.contact.loaded[c]) {
     if (abs(slip) > tolerance) return slip > 0 ? forward : backward;
     return ws.contact.loaded[c] ? locked : mode == locked ? open : mode;
   }

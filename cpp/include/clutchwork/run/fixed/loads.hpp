@@ -10,17 +10,22 @@ namespace clutchwork::fixed {
 /// Which bound a contact has: its static torque, its kinetic one, that for good; none, where a gear jams.
 enum Box : int { at_rest, sliding, slips_on, stops };
 
+/// Below this a pivot of contacts that follow loads is not positive.
+inline constexpr double least_pivot = 1e-6;
+
 /// The impulses of loads without those of contacts, where the changes without them are known.
 inline void see_free_loads(Run& ws, double h) {
   const System& sys = ws.sys;
   Fixed<double>& f = ws.fixed;
   const int nv = int(sys.speeds), np = int(sys.prescribed);
   for (int l = 0; l < sys.loads; ++l) {
-    double sum = dot(nv, f.load_by_speed + l * nv, f.change) + dot(np, f.load_by_given + l * np, f.given_change);
+    double sum = dot(nv, f.load_by_speed + l * nv, f.change);
+    if (np > 0) sum += dot(np, f.load_by_given + l * np, f.given_change);
     double size = abs(sum);
     for (int d = 0; d < ws.n_directions; ++d) {
+      if (!is_smooth(ws, d)) continue;
       const double rate = load_rate(sys, l, d);
-      if (rate == 0 || !is_smooth(ws, d)) continue;
+      if (rate == 0) continue;
       const double middle = f.start_rate[d] + 0.5 * (f.rate_change[d] + f.gained[d]);
       const double impulse = h * rate * (f.force[d] + f.kept[d] * middle);
       sum -= impulse, size += abs(impulse);
@@ -45,13 +50,13 @@ inline double load_scale(const Run& ws, int l) {
 
 /// What the contacts that follow loads can hold in this step, over their loads.
 inline void see_bounds_of_loads(Run& ws) {
-  for (int l = 0; l < ws.sys.loads; ++l) {
-    const int c = int(ws.sys.load_contact[l]), d = int(ws.sys.elements) + c, mode = ws.contact.mode[c];
-    const double size = mode == locked || mode == open ? 0.0 : larger(mode * ws.fixed.predicted[d], 0.0);
-    for (int way = 0; way < 2; ++way)
-      ws.fixed.load_bound[2 * l + way] = bound_of(ws, c, 2 * way - 1, size, ws.branch[d].piece);
+  for (int k = 0; k < ws.fixed.plan.n_unsteady; ++k) {
+    const int l = ws.fixed.plan.unsteady[k], c = int(ws.sys.load_contact[l]), mode = ws.contact.mode[c];
+    const double slip = ws.fixed.predicted[ws.sys.elements + c];
+    see_bound(ws, l, mode == locked || mode == open ? 0.0 : larger(mode * slip, 0.0));
   }
 }
+
 /// The same of load l against slip in a direction.
 inline const Bound<double>& bound_at(const Run& ws, int l, int direction) {
   return ws.fixed.load_bound[2 * l + (direction > 0)];
@@ -62,12 +67,22 @@ inline double most_impulse(const Run& ws, int l, int direction, double load, dou
   return larger(h * bound_at(ws, l, direction).at(load / h), 0.0);
 }
 
-/// The bounds of a contact; one between prescribed shafts has its impulse whatever they are.
-inline void set_bounds(Run& ws, int c, double ahead, double behind, double h) {
+/// Whether a contact joins prescribed shafts alone.
+CLUTCHWORK_INLINE bool joins_prescribed(const Run& ws, int c) { return ws.fixed.plan.n_rigid > 0 && is_rigid(ws, c); }
+
+/// The bounds of a contact; one between prescribed shafts has its impulse whatever they are. What resists waits in
+/// `kinetic` and `limit` as an impulse.
+CLUTCHWORK_INLINE void set_bounds(Run& ws, int c, double ahead, double behind) {
   Fixed<double>& f = ws.fixed;
-  if (!is_rigid(ws, c)) f.lower[c] = -ahead, f.upper[c] = behind;
-  f.kinetic[2 * c + 1] = f.limit[2 * c + 1] = ahead / h;
-  f.kinetic[2 * c] = f.limit[2 * c] = behind / h;
+  if (!joins_prescribed(ws, c)) f.lower[c] = -ahead, f.upper[c] = behind;
+  f.kinetic[2 * c + 1] = f.limit[2 * c + 1] = ahead, f.kinetic[2 * c] = f.limit[2 * c] = behind;
+}
+/// These as torques.
+inline void share_over_step(Run& ws, double h) {
+  for (int l = 0; l < ws.sys.loads; ++l) {
+    const int c = int(ws.sys.load_contact[l]);
+    for (int way = 0; way < 2; ++way) ws.fixed.kinetic[2 * c + way] = ws.fixed.limit[2 * c + way] /= h;
+  }
 }
 
 /// What the contacts that slip can give with the loads of their last torques; those at rest have no bounds yet.
@@ -80,16 +95,49 @@ inline void begin_loads(Run& ws, double h) {
     const double load = load_impulse(ws, l);
     for (int way = 0; way < 2; ++way) f.load_line[2 * l + way] = bound_at(ws, l, 2 * way - 1).line_at(load / h);
     if (mode == locked || mode == open) {
-      set_bounds(ws, c, infinity, infinity, h);
+      set_bounds(ws, c, infinity, infinity);
     } else {
-      set_bounds(ws, c, most_impulse(ws, l, forward, load, h), most_impulse(ws, l, backward, load, h), h);
+      set_bounds(ws, c, most_impulse(ws, l, forward, load, h), most_impulse(ws, l, backward, load, h));
     }
   }
 }
 
+/// Bounds of the only load where all contacts slip, each at one of its bounds as it did: with the line that its load
+/// is on, in closed form. False: neither line has it, or not all of them do. docs/theory/fixed-steps.md (13)
+inline bool slip_with_load(Run& ws, double h) {
+  Fixed<double>& f = ws.fixed;
+  const int nc = int(ws.sys.contacts), own = int(ws.sys.load_contact[0]), mode = ws.contact.mode[own];
+  if (ws.sys.loads != 1 || f.plan.n_rigid > 0) return false;
+  double base = f.load_free[0];
+  for (int c = 0; c < nc; ++c) {
+    const int other = ws.contact.mode[c];
+    if (other == locked || other == open) return false;
+    f.impulse[c] = other == forward ? f.lower[c] : f.upper[c];
+    if (c == own) continue;
+    if (!(abs(f.impulse[c]) < infinity)) return false;
+    base += f.load_reach[c] * f.impulse[c];
+  }
+  const Bound<double>& bound = bound_at(ws, 0, mode);
+  const double reach = f.load_reach[own], per_h = 1 / h;
+  for (int line = 0; line < 2; ++line) {
+    const double pivot = 1 + mode * bound.slope[line] * reach;
+    const double size = bound.slope[line] * base + h * bound.offset[line];
+    if (!(pivot > least_pivot) || !(size >= 0)) continue;
+    const double load = base - mode * reach * size / pivot;
+    if (bound.line_at(load * per_h) != line) continue;
+    f.impulse[own] = -mode * size / pivot;
+    set_bounds(ws, own, most_impulse(ws, 0, forward, load, h), most_impulse(ws, 0, backward, load, h));
+    (mode == forward ? f.lower[own] : f.upper[own]) = f.impulse[own];
+    f.load_line[0] = bound_at(ws, 0, backward).line_at(load * per_h);
+    f.load_line[1] = bound_at(ws, 0, forward).line_at(load * per_h);
+    return true;
+  }
+  return false;
+}
+
 /// The bound at which a contact is, -1 below, 1 above; 0: none. What prescribed speeds drive is at one that resists.
 inline int bound_side(const Run& ws, int c, double tolerance) {
-  if (!is_rigid(ws, c)) return ws.fixed.side[c];
+  if (!joins_prescribed(ws, c)) return ws.fixed.side[c];
   const double slip = ws.fixed.end_slip[c];
   return abs(slip) <= tolerance ? 0 : slip > 0 ? -1 : 1;
 }
@@ -110,10 +158,10 @@ inline int see_bounds(Run& ws, double h, double tolerance, bool& moves) {
   moves = false, f.load_miss = 0;
   for (int l = 0; l < ws.sys.loads; ++l) {
     const int c = int(ws.sys.load_contact[l]), side = bound_side(ws, c, tolerance);
+    const double load = f.load_now[l] = load_impulse(ws, l), x = f.impulse[c], size = abs(x) + load_scale(ws, l);
     if (f.box[c] == stops) continue;
-    const double load = load_impulse(ws, l), x = f.impulse[c], size = abs(x) + load_scale(ws, l);
     const double ahead = most_impulse(ws, l, forward, load, h), behind = most_impulse(ws, l, backward, load, h);
-    set_bounds(ws, c, ahead, behind, h);
+    set_bounds(ws, c, ahead, behind);
     const double wanted = side == 0 ? larger(smaller(x, behind), -ahead) : side < 0 ? -ahead : behind;
     moves = moves || abs(wanted - x) > (side == 0 ? 1e-12 : 1e-13) * size;
     if (size > 0) f.load_miss = larger(f.load_miss, abs(wanted - x) / size);
@@ -135,7 +183,7 @@ inline void couple_bounds(Run& ws, const Boxes& p, double h, double tolerance, i
     for (int a = 0; a < n; ++a) {
       const int l = f.follower[a], c = int(ws.sys.load_contact[l]), side = bound_side(ws, c, tolerance);
       const Bound<double>& bound = bound_at(ws, l, -side);
-      const double load = load_impulse(ws, l) / h;
+      const double load = f.load_now[l] / h;
       const int line = last_lines ? f.load_line[2 * l + (side < 0)] : bound.line_at(load);
       f.load_matrix[a * n + b] = (a == b ? 1.0 : 0.0) - side * bound.slope[line] * answered(ws, p, l, from, m);
       f.load_off[a] = side * h * bound.on(line, load) - f.impulse[c];
@@ -147,11 +195,10 @@ inline void couple_bounds(Run& ws, const Boxes& p, double h, double tolerance, i
 /// it drives: their pivots are not positive, and their places in `follower` are negative.
 /// docs/theory/load-dependent.md, rule 4
 inline int solve_bounds(Fixed<double>& f, int n) {
-  constexpr double least = 1e-6;
   double *m = f.load_matrix, *x = f.load_off;
   int out = 0;
   for (int k = 0; k < n; ++k) {
-    if (!(m[k * n + k] > least)) {
+    if (!(m[k * n + k] > least_pivot)) {
       ++out, x[k] = 0, f.follower[k] = -1 - f.follower[k];
       for (int j = 0; j < n; ++j) m[k * n + j] = m[j * n + k] = 0;
       m[k * n + k] = 1;
@@ -170,21 +217,21 @@ inline int solve_bounds(Fixed<double>& f, int n) {
 }
 
 /// The bound of the contact of a load that solves its system; a gear that was left out stops for this step.
-inline void take_bound(Run& ws, int a, double h, double tolerance) {
+inline void take_bound(Run& ws, int a, double tolerance) {
   Fixed<double>& f = ws.fixed;
   const bool jams = f.follower[a] < 0;
   const int c = int(ws.sys.load_contact[jams ? -1 - f.follower[a] : f.follower[a]]);
   if (jams) {
     f.box[c] = stops, f.side[c] = 0;
-    return set_bounds(ws, c, infinity, infinity, h);
+    return set_bounds(ws, c, infinity, infinity);
   }
   const int side = bound_side(ws, c, tolerance);
   const double size = larger(side * (f.impulse[c] + f.load_off[a]), 0.0);
-  if (is_rigid(ws, c)) f.lower[c] = f.upper[c] = side * size;
+  if (joins_prescribed(ws, c)) f.lower[c] = f.upper[c] = side * size;
   if (side < 0)
-    f.lower[c] = -size, f.kinetic[2 * c + 1] = f.limit[2 * c + 1] = size / h;
+    f.lower[c] = -size, f.kinetic[2 * c + 1] = f.limit[2 * c + 1] = size;
   else
-    f.upper[c] = size, f.kinetic[2 * c] = f.limit[2 * c] = size / h;
+    f.upper[c] = size, f.kinetic[2 * c] = f.limit[2 * c] = size;
 }
 
 /// The bounds of contacts that follow loads at the loads of the solution: exactly where these are at a bound, as long
@@ -202,10 +249,10 @@ inline bool follow_loads(Run& ws, const Boxes& p, double h, double tolerance) {
     solve_bounds(f, n);
   }
   for (int l = 0; l < ws.sys.loads; ++l) {
-    const double load = load_impulse(ws, l) / h;
+    const double load = f.load_now[l] / h;
     for (int way = 0; way < 2; ++way) f.load_line[2 * l + way] = bound_at(ws, l, 2 * way - 1).line_at(load);
   }
-  for (int a = 0; a < n; ++a) take_bound(ws, a, h, tolerance);
+  for (int a = 0; a < n; ++a) take_bound(ws, a, tolerance);
   return true;
 }
 

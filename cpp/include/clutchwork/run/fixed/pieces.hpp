@@ -41,9 +41,7 @@ inline void cross_branch(Run& ws, Branch<double>& b) {
 /// All of them behind a step.
 inline void cross_pieces(Run& ws) {
   const System& sys = ws.sys;
-  for (int d = 0; d < ws.n_directions; ++d) {
-    if (ws.fixed.bends[d] == crossing) cross_branch(ws, ws.branch[d]);
-  }
+  for (int k = 0; k < ws.fixed.plan.n_crossing; ++k) cross_branch(ws, ws.branch[ws.fixed.plan.crossing[k]]);
   if (sys.shared == 0) return;
   shared_inputs(ws, ws.state);
   if (ws.guard.n_processes > 0) find_process_pieces(ws);

@@ -1,4 +1,5 @@
 #pragma once
+#include <clutchwork/components/branch.hpp>
 #include <clutchwork/components/component.hpp>
 #include <clutchwork/components/dense.hpp>
 #include <clutchwork/components/direction.hpp>
@@ -66,6 +67,79 @@ inline bool takes(Run& ws) {
   return has_fixed_steps(sys) || refuse(-1, Refusal::many_speeds);
 }
 
+/// Whether a torque is linear in the rate and the state of its element.
+inline bool is_linear(int kind) {
+  return visit_torque(kind, [](auto tag) { return LinearElement<typename decltype(tag)::type>; });
+}
+/// Whether a contact blocks one way, at times at least.
+inline bool may_block(int kind) {
+  return visit_contact(kind, [](auto tag) {
+    using E = typename decltype(tag)::type;
+    return StopContact<E> || int(E::one_way) != 0;
+  });
+}
+
+/// Whether neither slip nor inputs change what a contact can hold over its load.
+inline bool is_steady(const Run& ws, int c) {
+  return visit_contact(ws.sys.contact_kind[c], [&](auto tag) {
+    using E = typename decltype(tag)::type;
+    if constexpr (LoadedContact<E>)
+      return E::steady(
+          *reinterpret_cast<const typename E::template Params<double>*>(ws.params + ws.sys.contact_param[c]));
+    return true;
+  });
+}
+
+/// What the contact of load l can hold over it, at a size of slip.
+inline void see_bound(Run& ws, int l, double size) {
+  const int c = int(ws.sys.load_contact[l]);
+  const int piece = ws.branch[ws.sys.elements + c].piece;
+  for (int way = 0; way < 2; ++way) ws.fixed.load_bound[2 * l + way] = bound_of(ws, c, 2 * way - 1, size, piece);
+}
+
+/// Slopes of a linear torque, and what is left of it without rate and state. Whether it resists: what drives is taken
+/// explicitly.
+inline bool find_line(Run& ws, int d) {
+  Fixed<double>& f = ws.fixed;
+  const Branch<double>& b = ws.branch[d];
+  Line<double>& line = f.plan.line[d];
+  for (int i = 0; i < b.states; ++i) f.state_ahead[b.state + i] = 0;
+  const Partial<double> p =
+      branch_partial(ws, b, 0.0, 0.0, f.state_ahead, ws.observed.state_rates, state_partials(ws, d));
+  line = {p.torque, p.by_rate, 0, 0};
+  if (b.states > 0) line.by_state = ws.jacobian.f_state[b.state], line.state_by_rate = ws.jacobian.g_rate[b.state];
+  return line.by_rate <= 0 && line.by_state * line.state_by_rate <= 0;
+}
+
+/// What a step goes through.
+inline void make_plan(Run& ws) {
+  const System& sys = ws.sys;
+  FixedPlan<double>& p = ws.fixed.plan;
+  p.n_linear = p.n_bent = p.n_bounded = p.n_one_way = p.n_rigid = p.n_stops = p.n_crossing = 0;
+  for (int d = 0; d < ws.n_directions; ++d) {
+    const Branch<double>& b = ws.branch[d];
+    p.smooth[d] = d < sys.elements || b.compliant;
+    const bool linear = d < sys.elements && b.ways == 1 && is_linear(b.kind) && find_line(ws, d);
+    if (linear) p.linear[p.n_linear++] = d;
+    if (p.smooth[d] && !linear) p.bent[p.n_bent++] = d;
+    if (ws.fixed.bends[d] == crossing) p.crossing[p.n_crossing++] = d;
+  }
+  for (int c = 0; c < sys.contacts; ++c) {
+    const int kind = sys.contact_kind[c];
+    p.hold[c].fault = -1, p.hold[c].low = infinity, p.hold[c].high = -infinity;
+    p.blocks[c] = may_block(kind);
+    if (p.blocks[c] != 0) p.one_way[p.n_one_way++] = c;
+    if (is_bounded_law(sys.contact_law[c])) p.bounded[p.n_bounded++] = c;
+    if (is_rigid(ws, c)) p.rigid[p.n_rigid++] = c;
+    if (sys.contact_place[c] >= 0) p.stops[p.n_stops++] = c;
+  }
+  p.n_unsteady = 0;
+  for (int l = 0; l < sys.loads; ++l) {
+    see_bound(ws, l, 0.0);
+    if (!is_steady(ws, int(sys.load_contact[l]))) p.unsteady[p.n_unsteady++] = l;
+  }
+}
+
 /// The branches of all directions, each at the place of its direction, and what they ask for in every step.
 inline void pack_all(Run& ws) {
   Fixed<double>& f = ws.fixed;
@@ -89,6 +163,7 @@ inline void pack_all(Run& ws) {
     const int kind = ws.sys.contact_kind[c];
     f.two_sided[c] = is_shaped(kind) || is_limited(kind);
   }
+  make_plan(ws);
   fill_rows(ws);
   weigh_loads(ws);
   f.ready = true;
@@ -119,7 +194,7 @@ inline bool factor_step(Run& ws, double h) {
     const auto row = rate_row(sys, ne + c);
     for (int i = 0; i < nv; ++i) x[i] = 0;
     for (int k = 0; k < row.n; ++k) x[row.column[k]] = row.value[k];
-    forward_solve(nv, f.factor, nv, x), backward_solve(nv, f.factor, nv, x);
+    solve_step(nv, f.factor, x);
   }
   for (int c = 0; c < nc; ++c) {
     for (int o = 0; o < nc; ++o) f.mobility[c * nc + o] = rate_row(sys, ne + c).times(f.answer + o * nv);

@@ -1,68 +1,134 @@
 #pragma once
+#include <clutchwork/components/dense.hpp>
 #include <clutchwork/components/direction.hpp>
+#include <clutchwork/run/fixed/pairs.hpp>
 #include <clutchwork/workspace.hpp>
 
-/// Rates of all directions and speeds of all nodes from speeds: of few speeds by whole rows, which need no indices.
+/// Rates of all directions and speeds of all nodes from speeds: of few speeds by whole matrices, which need no indices.
 namespace clutchwork::fixed {
 
 using Run = Workspace<double>;
 
-/// y := rows x, for n rows of N numbers.
+/// y := M x, for n rows of N numbers that stand by columns, each as long as `column`.
 template <int N>
-CLUTCHWORK_INLINE void multiply_few(int n, const double* row, const double* x, double* y) {
+CLUTCHWORK_INLINE void multiply_few(int n, int column, const double* matrix, const double* x, double* y) {
   double at[N];
   for (int k = 0; k < N; ++k) at[k] = x[k];
-  for (int i = 0; i < n; ++i, row += N) {
-    double s = row[0] * at[0];
-    for (int k = 1; k < N; ++k) s += row[k] * at[k];
-    y[i] = s;
-  }
+  in_pairs(n, [&](int i, auto as) {
+    using V = decltype(as);
+    V s = take<V>(matrix + i) * at[0];
+    for (int k = 1; k < N; ++k) s += take<V>(matrix + k * column + i) * at[k];
+    put(y + i, s);
+  });
 }
 /// The same for as many numbers as there are speeds; `sparse(i)` is a row where these are more than a few.
 template <class Row>
-CLUTCHWORK_INLINE void multiply(int nv, int n, const double* rows, Row&& sparse, const double* x, double* y) {
+CLUTCHWORK_INLINE void multiply(int nv, int n, int column, const double* matrix, Row&& sparse, const double* x,
+                                double* y) {
   static_assert(most_whole_speeds == 4);
+  if constexpr (!has_few_sizes) {
+    for (int i = 0; i < n; ++i) {
+      if (nv > most_whole_speeds) {
+        y[i] = sparse(i).times(x);
+        continue;
+      }
+      y[i] = matrix[i] * x[0];
+      for (int k = 1; k < nv; ++k) y[i] += matrix[k * column + i] * x[k];
+    }
+    return;
+  }
   switch (nv) {
     case 1:
-      return multiply_few<1>(n, rows, x, y);
+      return multiply_few<1>(n, column, matrix, x, y);
     case 2:
-      return multiply_few<2>(n, rows, x, y);
+      return multiply_few<2>(n, column, matrix, x, y);
     case 3:
-      return multiply_few<3>(n, rows, x, y);
+      return multiply_few<3>(n, column, matrix, x, y);
     case 4:
-      return multiply_few<4>(n, rows, x, y);
+      return multiply_few<4>(n, column, matrix, x, y);
     default:
       for (int i = 0; i < n; ++i) y[i] = sparse(i).times(x);
   }
 }
 
-/// Rates of all directions by speeds, without the prescribed ones.
-inline void rates_by(const Run& ws, const double* speeds, double* rates) {
+/// x := (L L')^-1 x for a factor of N numbers a row.
+template <int N>
+CLUTCHWORK_INLINE void solve_few(const double* l, double* x) {
+  double at[N];
+  for (int i = 0; i < N; ++i) {
+    double s = x[i];
+    for (int k = 0; k < i; ++k) s -= l[i * N + k] * at[k];
+    at[i] = s / l[i * N + i];
+  }
+  for (int i = N - 1; i >= 0; --i) {
+    double s = at[i];
+    for (int k = i + 1; k < N; ++k) s -= l[k * N + i] * at[k];
+    at[i] = s / l[i * N + i];
+  }
+  for (int i = 0; i < N; ++i) x[i] = at[i];
+}
+/// The same for as many numbers as there are speeds.
+inline void solve_step(int nv, const double* factor, double* x) {
+  if constexpr (has_few_sizes) {
+    static_assert(most_whole_speeds == 4);
+    switch (nv) {
+      case 1:
+        return solve_few<1>(factor, x);
+      case 2:
+        return solve_few<2>(factor, x);
+      case 3:
+        return solve_few<3>(factor, x);
+      case 4:
+        return solve_few<4>(factor, x);
+    }
+  }
+  forward_solve(nv, factor, nv, x), backward_solve(nv, factor, nv, x);
+}
+
+/// Rates of directions by speeds, without the prescribed ones: at least those from `first` on.
+CLUTCHWORK_INLINE void rates_by(const Run& ws, const double* speeds, double* rates, int first = 0) {
+  const int nv = int(ws.sys.speeds);
+  // pairs end where the arrays do
+  first -= first % 2;
   multiply(
-      int(ws.sys.speeds), ws.n_directions, ws.fixed.rate_rows, [&](int d) { return rate_row(ws.sys, d); }, speeds,
-      rates);
+      nv, ws.n_directions - first, ws.n_directions, ws.fixed.rate_rows + first,
+      [&](int d) { return rate_row(ws.sys, first + d); }, speeds, rates + first);
+}
+
+/// x += factor times the row of direction d.
+CLUTCHWORK_INLINE void add_direction(const Run& ws, int d, double factor, double* x) {
+  const int nv = int(ws.sys.speeds);
+  if (nv <= most_whole_speeds) {
+    const double* share = ws.fixed.rate_rows + d;
+    for (int k = 0; k < nv; ++k, share += ws.n_directions) x[k] += factor * *share;
+    return;
+  }
+  const auto row = rate_row(ws.sys, d);
+  for (int k = 0; k < row.n; ++k) x[row.column[k]] += factor * row.value[k];
 }
 
 /// Speeds of all nodes, or what they gain.
-inline void nodes_by(const Run& ws, const double* speeds, const double* given, double* nodes) {
+CLUTCHWORK_INLINE void nodes_by(const Run& ws, const double* speeds, const double* given, double* nodes) {
   const System& sys = ws.sys;
   multiply(
-      int(sys.speeds), int(sys.nodes), ws.fixed.node_rows, [&](int n) { return basis_row(sys, n); }, speeds, nodes);
+      int(sys.speeds), int(sys.nodes), int(sys.nodes), ws.fixed.node_rows, [&](int n) { return basis_row(sys, n); },
+      speeds, nodes);
   for (int n = 0; sys.prescribed > 0 && n < sys.nodes; ++n) {
     for (int p = 0; p < sys.prescribed; ++p) nodes[n] += sys.basis_prescribed[n * sys.prescribed + p] * given[p];
   }
 }
 
-/// Once per run: the whole rows of few speeds.
+/// Once per run: the whole rows of few speeds, by columns.
 inline void fill_rows(Run& ws) {
   const int nv = int(ws.sys.speeds);
   if (nv > most_whole_speeds) return;
-  auto fill = [&](double* whole, const auto& row) {
-    for (int k = 0; k < nv; ++k) whole[k] = 0;
-    for (int k = 0; k < row.n; ++k) whole[row.column[k]] = row.value[k];
+  auto fill = [&](double* whole, int column, const auto& row) {
+    for (int k = 0; k < nv; ++k) whole[k * column] = 0;
+    for (int k = 0; k < row.n; ++k) whole[row.column[k] * column] = row.value[k];
   };
-  for (int d = 0; d < ws.n_directions; ++d) fill(ws.fixed.rate_rows + d * nv, rate_row(ws.sys, d));
-  for (int n = 0; n < ws.sys.nodes; ++n) fill(ws.fixed.node_rows + n * nv, basis_row(ws.sys, n));
+  const int nd = ws.n_directions, nn = int(ws.sys.nodes);
+  for (int d = 0; d < nd; ++d) fill(ws.fixed.rate_rows + d, nd, rate_row(ws.sys, d));
+  for (int n = 0; n < nn; ++n) fill(ws.fixed.node_rows + n, nn, basis_row(ws.sys, n));
 }
 
 }  // namespace clutchwork::fixed

@@ -2,6 +2,7 @@
 #include <clutchwork/components/branch.hpp>
 #include <clutchwork/components/direction.hpp>
 #include <clutchwork/motion/shared.hpp>
+#include <clutchwork/run/fixed/contacts.hpp>
 #include <clutchwork/run/fixed/prepare.hpp>
 #include <clutchwork/run/output.hpp>
 
@@ -28,16 +29,21 @@ inline double supply_power(const Run& ws, int i, double torque, double rate, con
   return torque * rate + branch_heat(ws, b, rate, state, Dual<double, 1>(torque)).v;
 }
 
-/// Energies since the start of a step up to its share s, given one after another: directions, sources, supplies,
-/// meters. docs/theory/fixed-steps.md (9)
+/// Energy that direction d gives since the start of a step up to its share s. docs/theory/fixed-steps.md (9)
+template <class V = double>
+CLUTCHWORK_INLINE V direction_energy(const Run& ws, const Look& look, double s, int d) {
+  const Fixed<double>& f = ws.fixed;
+  return s * look.h * take<V>(look.torque + d) * (take<V>(f.start_rate + d) + 0.5 * s * take<V>(f.rate_change + d));
+}
+
+/// The same of sources, supplies and meters, given one after another with the numbers behind those of the directions.
 template <class Add>
-void energies_until(const Run& ws, const Look& look, double s, Add&& add) {
+void other_energies_until(const Run& ws, const Look& look, double s, Add&& add) {
   const System& sys = ws.sys;
   const Fixed<double>& f = ws.fixed;
   const int np = int(sys.prescribed), nv = int(sys.speeds), nd = ws.n_directions;
   const double span = s * look.h;
-  int at = 0;
-  for (int d = 0; d < nd; ++d) add(at++, span * look.torque[d] * (f.start_rate[d] + 0.5 * s * f.rate_change[d]));
+  int at = nd;
   for (int p = 0; p < np; ++p) {
     double impulse = 0;
     for (int i = 0; i < nv; ++i) impulse += sys.mass_prescribed[i * np + p] * look.change[i];
@@ -63,12 +69,18 @@ void energies_until(const Run& ws, const Look& look, double s, Add&& add) {
   }
 }
 
-/// Angles of all nodes at the share s of a step.
+/// Speeds of all nodes at the end of the step that was taken, and what they have gained.
+inline void see_nodes(const Run& ws, const Look& look) {
+  nodes_by(ws, ws.v, ws.fixed.given, ws.fixed.node_end);
+  nodes_by(ws, look.change, look.given, ws.fixed.node_gain);
+}
+
+/// Angles of all nodes at the share s of a step that is not taken yet.
 inline void angles_at(const Run& ws, const Look& look, double s, double* angle) {
   const Fixed<double>& f = ws.fixed;
-  nodes_by(ws, ws.v, f.given, f.node_start), nodes_by(ws, look.change, look.given, f.node_gain);
+  nodes_by(ws, ws.v, f.given, f.node_end), nodes_by(ws, look.change, look.given, f.node_gain);
   for (int n = 0; n < ws.sys.nodes; ++n)
-    angle[n] = ws.angle[n] + s * look.h * (f.node_start[n] + 0.5 * s * f.node_gain[n]);
+    angle[n] = ws.angle[n] + s * look.h * (f.node_end[n] + 0.5 * s * f.node_gain[n]);
 }
 
 /// Speeds, accelerations and angles of the nodes, and the states; `length`: that of the step by which accelerations are
@@ -77,16 +89,22 @@ inline void fill_motion(const Run& ws, const Look& look, double s, double length
   const System& sys = ws.sys;
   const Fixed<double>& f = ws.fixed;
   const RowLayout& at = ws.row;
-  // as they are behind the step, to the last bit
-  for (int i = 0; i < sys.speeds; ++i) f.ahead[i] = ws.v[i] + s * look.change[i];
-  for (int p = 0; p < sys.prescribed; ++p) f.given_ahead[p] = f.given[p] + s * look.given[p];
-  nodes_by(ws, f.ahead, f.given_ahead, row + at.speed);
-  nodes_by(ws, look.change, look.given, row + at.acceleration);
-  for (int n = 0; n < sys.nodes; ++n) {
-    row[at.acceleration + n] = length > 0 ? row[at.acceleration + n] / length : 0;
-    row[at.angle + n] = ws.angle[n];
+  double *speed = row + at.speed, *acceleration = row + at.acceleration, *angle = row + at.angle;
+  if (look.taken != 1) {
+    // as they are behind the step, to the last bit
+    for (int i = 0; i < sys.speeds; ++i) f.ahead[i] = ws.v[i] + s * look.change[i];
+    for (int p = 0; p < sys.prescribed; ++p) f.given_ahead[p] = f.given[p] + s * look.given[p];
+    nodes_by(ws, f.ahead, f.given_ahead, f.node_end);
+    nodes_by(ws, look.change, look.given, f.node_gain);
+  } else if (!ws.options.angles) {
+    see_nodes(ws, look);
   }
-  if (ws.options.angles && s > 0) angles_at(ws, look, s, row + at.angle);
+  for (int n = 0; n < sys.nodes; ++n) {
+    speed[n] = f.node_end[n];
+    acceleration[n] = length > 0 ? f.node_gain[n] / length : 0;
+    angle[n] = ws.angle[n];
+  }
+  if (ws.options.angles && s > 0) angles_at(ws, look, s, angle);
   for (int i = 0; i < sys.states; ++i) row[at.state + i] = ws.state[i] + s * look.state[i];
 }
 
@@ -98,8 +116,10 @@ inline void fill_energies(Run& ws, const Look& look, double s, double* row) {
   auto copy = [&](std::int64_t to, const double* from, std::int64_t n) {
     for (std::int64_t i = 0; i < n; ++i) row[to + i] = from[i];
   };
-  copy(at.element_torque, look.torque, ne), copy(at.contact_torque, look.torque + ne, sys.contacts);
-  copy(at.element_work, ws.work, ne), copy(at.contact_work, ws.work + ne, sys.contacts);
+  double *torque = row + at.element_torque, *work = row + at.element_work;
+  for (int d = 0; d < ne; ++d) torque[d] = look.torque[d], work[d] = ws.work[d];
+  torque = row + at.contact_torque - ne, work = row + at.contact_work - ne;
+  for (int d = ne; d < nd; ++d) torque[d] = look.torque[d], work[d] = ws.work[d];
   copy(at.prescribed_work, ws.prescribed_work, sys.prescribed);
   copy(at.supply_energy, ws.supplied, sys.supplies), copy(at.meter_energy, ws.metered, sys.meters);
   if (!ws.options.work || s == 0) return;
@@ -109,7 +129,8 @@ inline void fill_energies(Run& ws, const Look& look, double s, double* row) {
     if (supply < 0) return row[at.prescribed_work + source];
     return row[meter < 0 ? at.supply_energy + supply : at.meter_energy + meter];
   };
-  energies_until(ws, look, s, [&](int i, double energy) { place(i) += energy; });
+  for (int d = 0; d < nd; ++d) place(d) += direction_energy(ws, look, s, d);
+  other_energies_until(ws, look, s, [&](int i, double energy) { place(i) += energy; });
 }
 
 /// Flows and powers of supplies, at the inputs of the row.
@@ -136,6 +157,15 @@ inline int shown_mode(const Run& ws, const Look& look, int c, int mode, double s
   return rate_at(ws, look, s, int(ws.sys.elements) + c) < 0 ? backward : forward;
 }
 
+/// Static torque of contact c against the slip that a torque resists.
+inline double shown_capacity(Run& ws, int c, double torque) {
+  const int l = ws.loads.of[c];
+  if (l >= 0 && ws.fixed.plan.n_unsteady == 0)
+    return bound_at(ws, l, torque > 0 ? backward : forward).at(ws.loads.now[l]);
+  if (l >= 0) return static_torque(ws, c, torque > 0 ? backward : forward);
+  return hold_of(ws, c).torque[torque > 0 ? 0 : 1];
+}
+
 /// The numbers of one row at the share s of a step.
 inline void fill_row(Run& ws, const Look& look, double s, double length, const int* mode, double* row) {
   const System& sys = ws.sys;
@@ -146,9 +176,8 @@ inline void fill_row(Run& ws, const Look& look, double s, double length, const i
   if (ws.in.n_shared_refs > 0) shared_inputs(ws, row + ws.row.state);
   fill_flows(ws, look, s, row);
   for (int c = 0; c < sys.contacts; ++c) {
-    const int resisted = look.torque[sys.elements + c] > 0 ? backward : forward;
     row[ws.row.contact_mode + c] = shown_mode(ws, look, c, mode[c], s);
-    row[ws.row.contact_capacity + c] = static_torque(ws, c, resisted);
+    row[ws.row.contact_capacity + c] = shown_capacity(ws, c, look.torque[sys.elements + c]);
   }
   for (int i = 0; i < sys.inputs; ++i) row[ws.row.input + i] = signal_value(ws, i, t);
 }

@@ -17,22 +17,43 @@ inline void predict(Run& ws, double h, double tolerance) {
   const System& sys = ws.sys;
   Fixed<double>& f = ws.fixed;
   const double share = f.time == ws.time && f.before > 0 ? 0.5 * h / f.before : 0;
-  for (int i = 0; i < sys.speeds; ++i) f.ahead[i] = ws.v[i] + share * f.gain[i];
+  in_pairs(int(sys.speeds), [&](int i, auto as) {
+    using V = decltype(as);
+    put(f.ahead + i, take<V>(ws.v + i) + share * take<V>(f.gain + i));
+  });
   for (int i = 0; i < sys.states; ++i) f.state_ahead[i] = ws.state[i] + share * f.state_gain[i];
-  rates_by(ws, f.ahead, f.predicted), rates_by(ws, ws.v, f.start_rate);
-  for (int d = 0; d < ws.n_directions; ++d) {
+  // nobody reads those of elements where all are linear
+  const int first = f.plan.n_bent + ws.in.n_rate_refs > 0 ? 0 : int(sys.elements);
+  rates_by(ws, f.ahead, f.predicted, first), rates_by(ws, ws.v, f.start_rate);
+  for (int d = 0; sys.prescribed > 0 && d < ws.n_directions; ++d) {
     for (int p = 0; p < sys.prescribed; ++p) {
-      f.predicted[d] += prescribed_share(ws, d, p) * ws.in.prescribed[p];
+      if (d >= first) f.predicted[d] += prescribed_share(ws, d, p) * ws.in.prescribed[p];
       f.start_rate[d] += prescribed_share(ws, d, p) * f.given[p];
     }
+  }
+  for (int d = first; d < ws.n_directions; ++d) {
     if (abs(f.predicted[d]) <= tolerance) f.predicted[d] = 0;
   }
+}
+
+/// Take the value of a signal that was set, where that is all that has changed; whether it is.
+inline bool take_alone(Run& ws, double t) {
+  const int i = ws.in.alone;
+  if (i < 0 || !(ws.in.knot_behind > t) || ws.in.signal[i].varying || !is_held(ws, i)) return false;
+  seek(ws, i, t);
+  const double held = ws.in.signal[i].held;
+  for (int ref = 0; ref < ws.in.n_refs; ++ref) {
+    if (ws.in.ref_signal[ref] == i) ws.in.u[ref] = held, ws.in.du[ref] = 0;
+  }
+  ws.in.next_knot = ws.in.knot_behind, ws.in.alone = -1;
+  return true;
 }
 
 /// Signals at time t, beyond their knots where they have passed one.
 inline void read_signals(Run& ws, double t) {
   // which contacts are pressed and which fail is seen in every step
-  ws.in.next_knot > t ? inputs_at(ws, t) : load_inputs(ws, t);
+  if (ws.in.next_knot > t) return inputs_at(ws, t);
+  take_alone(ws, t) ? inputs_at(ws, t) : load_inputs(ws, t);
 }
 
 /// Inputs that are states or rates, as they are predicted for the middle.
@@ -93,17 +114,20 @@ inline void move_freely(Run& ws, double h) {
     for (int p = 0; p < np; ++p) x[i] -= sys.mass_prescribed[i * np + p] * f.given_change[p];
   }
   for (int d = 0; d < ws.n_directions; ++d) {
-    double given = 0;
-    for (int p = 0; p < np; ++p) given += prescribed_share(ws, d, p) * f.given_change[p];
-    f.rate_change[d] = given;
-    if (!is_smooth(ws, d)) continue;
-    const double impulse = h * (f.force[d] + f.kept[d] * (f.start_rate[d] + 0.5 * given));
-    const auto row = rate_row(sys, d);
-    for (int k = 0; k < row.n; ++k) x[row.column[k]] += impulse * row.value[k];
+    f.rate_change[d] = 0;
+    for (int p = 0; p < np; ++p) f.rate_change[d] += prescribed_share(ws, d, p) * f.given_change[p];
   }
-  forward_solve(nv, f.factor, nv, x), backward_solve(nv, f.factor, nv, x);
-  rates_by(ws, x, f.gained);
-  for (int c = 0; c < nc; ++c) f.gradient[c] = f.start_rate[ne + c] + f.rate_change[ne + c] + f.gained[ne + c];
+  auto push = [&](int d) {
+    add_direction(ws, d, h * (f.force[d] + f.kept[d] * (f.start_rate[d] + 0.5 * f.rate_change[d])), x);
+  };
+  for (int k = 0; k < f.plan.n_linear; ++k) push(f.plan.linear[k]);
+  for (int k = 0; k < f.plan.n_bent; ++k) push(f.plan.bent[k]);
+  solve_step(nv, f.factor, x);
+  rates_by(ws, x, f.gained, sys.loads > 0 ? 0 : ne);
+  in_pairs(nc, [&](int c, auto as) {
+    using V = decltype(as);
+    put(f.gradient + c, take<V>(f.start_rate + ne + c) + take<V>(f.rate_change + ne + c) + take<V>(f.gained + ne + c));
+  });
 }
 
 /// Speeds without inertia follow torques at once, of which a step knows those in its middle: they go on from the
@@ -127,15 +151,26 @@ inline void settle_massless(Run& ws, double h) {
 inline void move(Run& ws, double h) {
   const System& sys = ws.sys;
   Fixed<double>& f = ws.fixed;
-  const int nv = int(sys.speeds), ne = int(sys.elements);
-  for (int c = 0; c < sys.contacts; ++c) axpy(nv, f.impulse[c], f.answer + c * nv, f.change);
-  rates_by(ws, f.change, f.gained);
-  for (int d = 0; d < ws.n_directions; ++d) {
-    f.rate_change[d] += f.gained[d];
-    f.mean[d] = is_smooth(ws, d) ? f.force[d] + f.kept[d] * (f.start_rate[d] + 0.5 * f.rate_change[d]) : 0;
-    if (d >= ne) f.mean[d] += f.impulse[d - ne] / h;
+  const int nv = int(sys.speeds), ne = int(sys.elements), nc = int(sys.contacts);
+  for (int c = 0; c < nc; ++c) {
+    in_pairs(nv, [&](int i, auto as) {
+      using V = decltype(as);
+      put(f.change + i, take<V>(f.change + i) + f.impulse[c] * take<V>(f.answer + c * nv + i));
+    });
   }
-  end_states(ws);
+  rates_by(ws, f.change, f.gained);
+  // forces and slopes of what sticks are zero
+  in_pairs(ws.n_directions, [&](int d, auto as) {
+    using V = decltype(as);
+    const V change = take<V>(f.rate_change + d) + take<V>(f.gained + d);
+    put(f.rate_change + d, change);
+    put(f.mean + d, take<V>(f.force + d) + take<V>(f.kept + d) * (take<V>(f.start_rate + d) + 0.5 * change));
+  });
+  in_pairs_alone(nc, [&](int c, auto as) {
+    using V = decltype(as);
+    put(f.mean + ne + c, take<V>(f.mean + ne + c) + take<V>(f.impulse + c) / h);
+  });
+  end_states(ws, h);
   if (sys.shared > 0) change_shared(ws, h);
   // the first step has no middle before its own
   if (f.has_massless && f.before > 0) settle_massless(ws, h);
@@ -144,8 +179,9 @@ inline void move(Run& ws, double h) {
 /// Contacts that only join prescribed shafts: their torque moves nothing. False: a freewheel is turned backward.
 inline bool hold_rigid(Run& ws, double h, double tolerance) {
   Fixed<double>& f = ws.fixed;
-  for (int c = 0; c < ws.sys.contacts; ++c) {
-    if (!is_rigid(ws, c) || !ws.contact.loaded[c] || ws.loads.of[c] >= 0) continue;
+  for (int k = 0; k < f.plan.n_rigid; ++k) {
+    const int c = f.plan.rigid[k];
+    if (!ws.contact.loaded[c] || ws.loads.of[c] >= 0) continue;
     const double slip = f.end_slip[c];
     if (free_way(ws, c) * slip < -1e3 * tolerance) return ws.detail.component = int(ws.sys.elements) + c, false;
     if (abs(slip) > tolerance && free_way(ws, c) * slip <= 0)
@@ -156,7 +192,8 @@ inline bool hold_rigid(Run& ws, double h, double tolerance) {
 
 /// Whether the laws of the contacts know the slips at the end of the step; else `detail` tells which does not.
 inline bool are_known(Run& ws) {
-  for (int c = 0; c < ws.sys.contacts; ++c) {
+  for (int k = 0; k < ws.fixed.plan.n_bounded; ++k) {
+    const int c = ws.fixed.plan.bounded[k];
     double seen = 0;
     if (!ws.contact.loaded[c] || table_room(ws, c, ws.fixed.end_slip[c], seen) >= 0) continue;
     ws.detail.component = int(ws.sys.elements) + c, ws.detail.value = seen;
@@ -169,7 +206,8 @@ inline bool are_known(Run& ws) {
 inline bool gives_way(Run& ws, double tolerance) {
   const Fixed<double>& f = ws.fixed;
   bool any = false;
-  for (int c = 0; c < ws.sys.contacts; ++c) {
+  for (int k = 0; k < f.plan.n_one_way; ++k) {
+    const int c = f.plan.one_way[k];
     const bool held = ws.contact.loaded[c] && f.side[c] == 1 && f.lower[c] < f.upper[c];
     if (!held || free_way(ws, c) <= 0 || f.end_slip[c] >= -tolerance) continue;
     fail(ws, c);
@@ -195,6 +233,7 @@ inline Status make_step(Run& ws, const double t, const double h, const double en
   move_freely(ws, h);
   if (ws.sys.loads > 0) see_free_loads(ws, h);
   if (!find_impulses(ws, h, tolerance)) return Status::no_mode;
+  share_over_step(ws, h);
   if (!hold_rigid(ws, h, tolerance)) return Status::jammed;
   if (gives_way(ws, tolerance)) return rewind_signals(ws), make_step(ws, t, h, end);
   for (int l = 0; l < ws.sys.loads; ++l) ws.loads.now[l] = load_impulse(ws, l) / h;
@@ -208,14 +247,32 @@ inline Status make_step(Run& ws, const double t, const double h, const double en
 }
 
 /// The step is taken: speeds, states, angles, work and history.
-inline void take_over(Run& ws, const Look& look) {
+CLUTCHWORK_INLINE void take_over(Run& ws, const Look& look) {
   const System& sys = ws.sys;
   Fixed<double>& f = ws.fixed;
-  if (ws.options.work) energies_until(ws, look, 1.0, [&](int i, double energy) { work_of(ws, i) += energy; });
-  if (ws.options.angles) angles_at(ws, look, 1.0, ws.angle);
-  for (int i = 0; i < sys.speeds; ++i) ws.v[i] += f.change[i], f.gain[i] = f.change[i];
-  for (int i = 0; i < sys.states; ++i) ws.state[i] += f.state_change[i], f.state_gain[i] = f.state_change[i];
+  if (ws.options.work) {
+    in_pairs(ws.n_directions, [&](int d, auto as) {
+      using V = decltype(as);
+      put(ws.work + d, take<V>(ws.work + d) + direction_energy<V>(ws, look, 1.0, d));
+    });
+    if (sys.prescribed + sys.supplies + sys.meters > 0)
+      other_energies_until(ws, look, 1.0, [&](int i, double energy) { work_of(ws, i) += energy; });
+  }
+  auto gain = [](int n, const double* change, double* now, double* gained) {
+    in_pairs(n, [&](int i, auto as) {
+      const auto x = take<decltype(as)>(change + i);
+      put(now + i, take<decltype(as)>(now + i) + x), put(gained + i, x);
+    });
+  };
+  gain(int(sys.speeds), f.change, ws.v, f.gain), gain(int(sys.states), f.state_change, ws.state, f.state_gain);
   for (int p = 0; p < sys.prescribed; ++p) f.given[p] += f.given_change[p], f.given_gain[p] = f.given_change[p];
+  if (ws.options.angles) {
+    see_nodes(ws, look);
+    in_pairs(int(sys.nodes), [&](int n, auto as) {
+      using V = decltype(as);
+      put(ws.angle + n, take<V>(ws.angle + n) + look.h * (take<V>(f.node_end + n) - 0.5 * take<V>(f.node_gain + n)));
+    });
+  }
   f.before = look.h;
   ++ws.statistics.steps;
 }
@@ -228,7 +285,7 @@ inline Cause cause_of(const Run& ws, int c, int from) {
 }
 
 /// Report the contacts that have changed, in the order of their instants, and give them their modes.
-inline void report(Run& ws, const Look& look, double end) {
+[[gnu::noinline]] inline void report_changes(Run& ws, const Look& look, double end) {
   Fixed<double>& f = ws.fixed;
   const int ne = int(ws.sys.elements), nc = int(ws.sys.contacts);
   int n = 0;
@@ -241,7 +298,6 @@ inline void report(Run& ws, const Look& look, double end) {
     for (; at > 0 && f.instant[f.list[at - 1]] > f.instant[c]; --at) f.list[at] = f.list[at - 1];
     f.list[at] = c;
   }
-  if (n == 0) return;
   inputs_at(ws, end);
   const double energy = kinetic_energy(ws);
   for (int k = 0; k < n; ++k) {
@@ -254,6 +310,12 @@ inline void report(Run& ws, const Look& look, double end) {
     const double acceleration = f.rate_change[ne + c] / look.h;
     record(ws, {c, from, to, cause_of(ws, c, from), acceleration, f.torque[ne + c], f.mean[ne + c], energy, energy});
   }
+}
+
+CLUTCHWORK_INLINE void report(Run& ws, const Look& look, double end) {
+  bool any = false;
+  for (int c = 0; c < ws.sys.contacts; ++c) any = any || ws.fixed.mode[c] != ws.contact.mode[c];
+  if (any) report_changes(ws, look, end);
 }
 
 }  // namespace clutchwork::fixed

@@ -47,8 +47,8 @@ inline double gap_behind(const Run& ws, int c, int side, double h) {
 /// The first meeting in a step of the length h; a closed stop that opens in it may meet its other end.
 inline Meeting first_meeting(const Run& ws, double h, double tolerance) {
   Meeting first;
-  for (int c = 0; c < ws.sys.contacts; ++c) {
-    if (!is_stop(ws, c)) continue;
+  for (int k = 0; k < ws.fixed.plan.n_stops; ++k) {
+    const int c = ws.fixed.plan.stops[k];
     const int closed = ws.contact.side[c];
     if (closed != 0 && !(free_way(ws, c) * ws.fixed.end_slip[c] > tolerance)) continue;
     for (int side = -1; side <= 1; side += 2) {

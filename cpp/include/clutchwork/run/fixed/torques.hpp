@@ -107,33 +107,69 @@ inline bool is_kept(const Run& ws, const Branch<double>& b, double h) {
 }
 
 /// Whether a direction has a torque that is a function of its rate and states.
-inline bool is_smooth(const Run& ws, int d) { return d < ws.sys.elements || ws.branch[d].compliant; }
+inline bool is_smooth(const Run& ws, int d) { return ws.fixed.plan.smooth[d] != 0; }
+
+/// Torques that are linear: their part without the rate, and the slope over it for steps of another length. Whether the
+/// matrix has these.
+inline bool see_lines(Run& ws, double h) {
+  Fixed<double>& f = ws.fixed;
+  const bool other_length = f.length != h;
+  bool kept = true;
+  for (int k = 0; k < f.plan.n_linear; ++k) {
+    const int d = f.plan.linear[k];
+    const Line<double>& line = f.plan.line[d];
+    const Branch<double>& b = ws.branch[d];
+    double torque = line.offset;
+    if (b.inputs > 0) torque = branch_torque_once(ws, b, 0.0, ws.state, ws.observed.state_rates);
+    if (b.inputs == 0 && b.states > 0) torque += line.by_state * ws.state[b.state];
+    f.force[d] = torque;
+    if (!other_length) continue;
+    f.slope[d] = line.by_rate + 0.5 * h * line.by_state * line.state_by_rate;
+    // nothing else accounts for the rate
+    kept = kept && f.slope[d] == f.kept[d];
+  }
+  return kept;
+}
+
+/// The matrix gets the slopes that torques have now where it has not kept them. False: it is not positive definite.
+inline bool make_matrix(Run& ws, double h, bool kept) {
+  Fixed<double>& f = ws.fixed;
+  for (int d = 0; !kept && d < ws.n_directions; ++d) f.kept[d] = is_smooth(ws, d) ? f.slope[d] : 0;
+  return factor_step(ws, h);
+}
 
 /// All of them; the matrix follows where they have changed. False: it is not positive definite.
 inline bool see_torques(Run& ws, double h) {
   Fixed<double>& f = ws.fixed;
-  bool kept = true;
-  for (int d = 0; d < ws.n_directions; ++d) {
-    if (!is_smooth(ws, d)) continue;
+  const FixedPlan<double>& plan = f.plan;
+  bool kept = see_lines(ws, h);
+  for (int k = 0; k < plan.n_bent; ++k) {
+    const int d = plan.bent[k];
     // the first way has seen the others
     if (ws.branch[d].ways > 0) see_branch(ws, ws.branch[d], h);
     kept = kept && is_kept(ws, ws.branch[d], h);
   }
-  for (int d = 0; !kept && d < ws.n_directions; ++d) f.kept[d] = is_smooth(ws, d) ? f.slope[d] : 0;
-  if (!(kept && f.length == h) && !factor_step(ws, h)) return false;
-  for (int d = 0; d < ws.n_directions; ++d) {
-    if (is_smooth(ws, d)) f.force[d] -= f.kept[d] * f.predicted[d];
+  if (!(kept && f.length == h) && !make_matrix(ws, h, kept)) return false;
+  for (int k = 0; k < plan.n_bent; ++k) {
+    const int d = plan.bent[k];
+    f.force[d] -= f.kept[d] * f.predicted[d];
   }
   return true;
 }
 
 /// The states at the end, for the rates that were found.
-inline void end_states(Run& ws) {
+inline void end_states(Run& ws, double h) {
   Fixed<double>& f = ws.fixed;
-  for (int d = 0; d < ws.n_directions; ++d) {
+  auto middle = [&](int d) { return f.start_rate[d] + 0.5 * f.rate_change[d]; };
+  for (int k = 0; k < f.plan.n_linear; ++k) {
+    const int d = f.plan.linear[k];
     const Branch<double>& b = ws.branch[d];
-    if (!is_smooth(ws, d)) continue;
-    const double off = f.start_rate[d] + 0.5 * f.rate_change[d] - f.predicted[d];
+    if (b.states > 0) f.state_change[b.state] = h * f.plan.line[d].state_by_rate * middle(d);
+  }
+  for (int k = 0; k < f.plan.n_bent; ++k) {
+    const int d = f.plan.bent[k];
+    const Branch<double>& b = ws.branch[d];
+    const double off = middle(d) - f.predicted[d];
     for (int s = b.state; s < b.state + b.states; ++s)
       f.state_change[s] = (f.state_force[s] + f.state_slope[s] * off - ws.state[s]) / f.state_share[s];
   }
