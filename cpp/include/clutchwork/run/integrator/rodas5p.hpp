@@ -231,11 +231,19 @@ struct Rodas5P {
     return select(regular, error, Real<T>(infinity));
   }
 
+  /// b := (scale M - J)^-1 (b + factor M x).
+  template <class Form, class T = typename Form::Scalar>
+  [[gnu::noinline]] static void solve_with(Form& form, T factor, const T* x, T* b) {
+    form.add_mass_times(factor, x, b);
+    for (int i = form.nz(); i < form.n(); ++i) b[i] += factor * x[i];
+    solve(form, b);
+  }
+
   /// The error of a step, with what its interpolant hides of a fast motion right behind its start: its slope there is
   /// not that of the motion, and the matrix of the stages tells how far that goes. docs/theory/integrators.md (18)
   template <class Form, class T = typename Form::Scalar>
   [[gnu::noinline]] static Real<T> with_hidden(Form& form, Step<Form>& step, Real<T> error) {
-    const int n = form.n(), nz = form.nz();
+    const int n = form.n();
     T *hidden = step.point(), *slow = step.u();
     for (int i = 0; i < n; ++i) {
       T p0 = T(0);
@@ -243,15 +251,10 @@ struct Rodas5P {
       slow[i] = (step.y0()[i] - step.y1()[i] - p0) / step.h;
       hidden[i] = step.f0()[i];
     }
-    auto solve_with = [&](T factor, const T* x, T* b) {
-      form.add_mass_times(factor, x, b);
-      for (int i = nz; i < n; ++i) b[i] += factor * x[i];
-      solve(form, b);
-    };
-    solve_with(T(1), slow, hidden);
+    solve_with(form, T(1), slow, hidden);
     // what is no faster than the step has an error of its own, and goes out
     for (int i = 0; i < n; ++i) slow[i] = T(0);
-    solve_with(T(Real<T>(1) / (Real<T>(gamma) * step.h)), hidden, slow);
+    solve_with(form, T(Real<T>(1) / (Real<T>(gamma) * step.h)), hidden, slow);
     for (int i = 0; i < n; ++i) hidden[i] -= slow[i];
     const Real<T> size = error_norm(form, hidden, step.y0(), step.y1());
     return select(step.settles && size > Real<T>(most_hidden), larger(error, Real<T>(much_missed)), error);
