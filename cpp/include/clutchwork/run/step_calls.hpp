@@ -47,7 +47,7 @@ struct SizedCalls {
   [[gnu::noinline]] static Real<T> advance(Any& any, Step<Any>& step, Real<T> h) {
     Form form(any.ws);
     Step<Form> sized(form);
-    sized.t = step.t;
+    sized.t = step.t, sized.settles = step.settles;
     const Real<T> error = Integrator::advance(form, sized, h);
     step.h = sized.h, step.dense = sized.dense;
     return error;

@@ -70,6 +70,7 @@ struct StepSize {
   /// A shorter step. False: it is too short.
   CLUTCHWORK_INLINE bool shorten() {
     ++ws_.statistics.rejected;
+    if (ws_.settling > 0) ws_.settling = reach_;
     h_ = rounded_step(reach_ * (error_ < 1e300 ? larger(0.2, 0.9 * pow(error_, -0.2)) : 0.1));
     rejected_ = true;
     before_ = 0;
@@ -92,6 +93,7 @@ struct StepSize {
     rejected_ = false;
     before_ = 0, landings_ = 0;
     ws_.last_step = h_;
+    if (ws_.settling == infinity || reach_ >= ws_.settling) ws_.settling = 0;
   }
 };
 
