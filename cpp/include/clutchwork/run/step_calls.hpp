@@ -47,9 +47,13 @@ struct SizedCalls {
   [[gnu::noinline]] static Real<T> advance(Any& any, Step<Any>& step, Real<T> h) {
     Form form(any.ws);
     Step<Form> sized(form);
-    sized.t = step.t, sized.settles = step.settles;
+    sized.t = step.t;
     const Real<T> error = Integrator::advance(form, sized, h);
     step.h = sized.h, step.dense = sized.dense;
+    // it is rare, and compiled once
+    if constexpr (Integrator::stiff) {
+      if (step.settles && error < infinity) return Integrator::with_hidden_anew(any, step, error);
+    }
     return error;
   }
   [[gnu::noinline]] static void fit(Any& any, Step<Any>& step) {

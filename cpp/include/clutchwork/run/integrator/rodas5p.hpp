@@ -227,7 +227,10 @@ struct Rodas5P {
     form.ws.statistics.evaluations += count_where(regular, 7);
     for (int i = 0; i < n; ++i) step.y1()[i] = u[i] + step.k(7)[i];
     Real<T> error = error_norm(form, step.k(7), y0, step.y1());
-    if (!none(step.settles)) error = with_hidden(form, step, error);
+    // those of one size look behind it
+    if constexpr (Form::fixed_size == 0) {
+      if (!none(step.settles)) error = with_hidden(form, step, error);
+    }
     return select(regular, error, Real<T>(infinity));
   }
 
@@ -258,6 +261,13 @@ struct Rodas5P {
     for (int i = 0; i < n; ++i) hidden[i] -= slow[i];
     const Real<T> size = error_norm(form, hidden, step.y0(), step.y1());
     return select(step.settles && size > Real<T>(most_hidden), larger(error, Real<T>(much_missed)), error);
+  }
+
+  /// The same in a form that has no factor of its own.
+  template <class Form, class T = typename Form::Scalar>
+  [[gnu::noinline]] static Real<T> with_hidden_anew(Form& form, Step<Form>& step, Real<T> error) {
+    factor(form, T(Real<T>(1) / (Real<T>(gamma) * step.h)));
+    return with_hidden(form, step, error);
   }
 
   /// Coefficients of the quartic.
