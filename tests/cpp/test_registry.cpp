@@ -185,7 +185,8 @@ void is_a_line(const Fields& fields) {
     const At<S> at{S::variable(round == 0 ? 0.0 : g.between(-90, 90), 0), state, input, 0, points};
     found[0] = E::torque(p, at), E::state_rates(p, at, found + 1);
     for (int o = 0; o < 2 && round > 0; ++o) CHECK(found[o].d[0] == first[o].d[0] && found[o].d[1] == first[o].d[1]);
-    CHECK(found[1].d[1] == 0);
+    // the rate of the state is a multiple of the rate, with nothing beside it
+    CHECK(found[1].d[1] == 0 && found[1].v == found[1].d[0] * at.rate.v);
     for (int o = 0; o < 2; ++o) first[o] = found[o];
   }
 }

@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 
 import clutchwork as cw
+from clutchwork.run.simulation import begun
 
 # [kg m2], [N m s/rad], [N m], [s]: the shaft settles within a microsecond, and steps reach milliseconds
 INERTIA, DAMPING, BEFORE, JUMP, AT = 1e-3, 1e3, 1.0, 1e-3, 0.01
@@ -58,3 +59,18 @@ def test_a_motion_that_is_not_stiff_takes_no_step_more() -> None:
         d.add(cw.Torque("drive", shaft=a, torque=cw.Table(points) if knots else 1.0))
         counts.append(d.simulate(4.0, method="rodas5p").statistics["rejected"])
     assert counts[1] <= counts[0]
+
+
+@pytest.mark.parametrize("eps", [1e-9, 1e-7, 1e-6])
+def test_rows_do_not_depend_on_where_a_call_ends(eps: float) -> None:
+    """A first step that a call cuts short says nothing of the one behind it."""
+    points, short = SHAPES["jump"]
+    system = driveline(points).assemble()
+    whole = cw.simulate(system, 0.02, times=AFTER, atol=ATOL)
+    column = int(np.argmin(np.abs(whole.rows[-1] - whole["a.speed"][-1])))
+    run, late, none = begun(system, whole.options, None), AFTER[AT + eps < AFTER], np.empty((0, whole.rows.shape[1]))
+    rows = np.empty((late.size, whole.rows.shape[1]))
+    run.advance(AT + eps, none[:, 0], none, 0, 0)
+    run.advance(0.02, late, rows, 0, 0)
+    want = (BEFORE + JUMP - short(late - AT)) / DAMPING
+    assert rows[:, column] == pytest.approx(want, abs=ATOL + 1e-6 * BEFORE / DAMPING, rel=0)

@@ -87,10 +87,11 @@ class SignalsAt:
         made = {name: np.zeros((len(rows), len(x))) for name in self._open}
         forms = {name: self.at(x)[name] for name in made}
         here = _evaluated(forms, rows)
-        noise = ROUND_OFF * np.repeat([_largest(form, rows) for form in forms.values()], len(rows))
+        plain = _noise(forms, rows)
         for number in self.within:
             one = self.words.parameters[number]
             own, along = abs(float(x[number])), partial(self._along, x, number, tuple(made), rows)
+            noise = np.maximum(plain, self._noise_beside(x, number, tuple(made), rows))
             try:
                 found = slope(along, here, own, one.compared(own), one.reach, noise).value
             except Bent as bent:
@@ -98,6 +99,15 @@ class SignalsAt:
             for name, line in zip(made, found.reshape(len(made), -1), strict=True):
                 made[name][:, number] = line
         return made
+
+    def _noise_beside(self, x: Array, number: int, names: tuple[str, ...], rows: Array) -> Array | float:
+        """Round-off of the values beside: weights that are zero here may be the round-off of others there."""
+        moved, one = x.copy(), self.words.parameters[number]
+        moved[number] += PROBES[0] * min(one.scale, one.reach)
+        try:
+            return _noise(forms_of(self.words.assembled(moved), names), rows)
+        except ModelError:
+            return 0.0
 
     def _along(self, x: Array, number: int, names: tuple[str, ...], rows: Array, step: float) -> Array:
         moved = x.copy()
@@ -113,6 +123,11 @@ def forms_of(system: System, names: tuple[str, ...]) -> dict[str, Form]:
 
 def _evaluated(forms: Mapping[str, Form], rows: Array) -> Array:
     return np.concatenate([np.zeros(0), *(np.asarray(form(rows), dtype=float) for form in forms.values())])
+
+
+def _noise(forms: Mapping[str, Form], rows: Array) -> Array:
+    """Round-off of signals, of each row."""
+    return ROUND_OFF * np.repeat([_largest(form, rows) for form in forms.values()], len(rows))
 
 
 def _largest(form: Form, rows: Array) -> float:

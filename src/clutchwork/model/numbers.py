@@ -143,7 +143,7 @@ def is_plain_curve(value: Any, spec: Spec) -> bool:
     for point in value:
         if type(point) not in ROWS or len(point) != 2 or type(point[0]) is not float or type(point[1]) is not float:
             return False
-        if not (isfinite(point[0]) and least <= point[1] < inf):
+        if not (isfinite(point[0]) and isfinite(point[1]) and least <= point[1]):
             return False
     for (x, y), (x_next, y_next) in pairwise(value):
         width = x_next - x

@@ -283,7 +283,7 @@ Status decide_placed(Workspace<T>& ws, bool anew, double* row, double* margins) 
   double span = least * grain;
   for (int round = 0; round < rounds && span <= most * grain; ++round) {
     ws.fresh_phase = true;
-    if (anew || inputs_decide(ws)) ws.in.next_knot = -infinity;
+    if (anew || inputs_decide(ws)) ws.in.next_knot = -infinity, ws.in.alone = -1;
     anew = false;
     Sink sink;
     const int events = ws.events.n;

@@ -93,7 +93,9 @@ struct StepSize {
     rejected_ = false;
     before_ = 0, landings_ = 0;
     ws_.last_step = h_;
-    if (ws_.settling == infinity || reach_ >= ws_.settling) ws_.settling = 0;
+    // one that was cut short says nothing of the next one
+    if (ws_.settling == infinity) ws_.settling = cut_ ? larger(h_, reach_) : 0;
+    if (reach_ >= ws_.settling) ws_.settling = 0;
   }
 };
 
