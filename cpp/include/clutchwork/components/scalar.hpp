@@ -91,3 +91,8 @@ CLUTCHWORK_HOT T smaller(T a, T b) {
 }
 
 }  // namespace clutchwork
+
+/// What a fixed step computes with.
+namespace clutchwork::fixed {
+using real = double;
+}  // namespace clutchwork::fixed

@@ -7,8 +7,8 @@
 namespace clutchwork::fixed {
 
 /// One row, at the share s of a step; `length`, `mode`: as in fill_row.
-inline Status emit(Run& ws, const Look& look, double t, double s, double length, const int* mode, Sink& sink) {
-  double* row = sink.rows + ws.row.size * sink.at;
+inline Status emit(Run& ws, const Look& look, real t, real s, real length, const int* mode, Sink& sink) {
+  real* row = sink.rows + ws.row.size * sink.at;
   fill_row(ws, look, s, length, mode, row);
   if (!is_finite(ws, row)) return Status::not_finite;
   if (sink.steps > 0) sink.times[sink.at] = t;
@@ -17,21 +17,21 @@ inline Status emit(Run& ws, const Look& look, double t, double s, double length,
 }
 
 /// Rows of the step that fall before its end.
-inline Status emit_inside(Run& ws, const Look& look, double end, Sink& sink) {
+inline Status emit_inside(Run& ws, const Look& look, real end, Sink& sink) {
   Status status = Status::running;
   for (std::int64_t k = 1; status == Status::running && k < sink.steps; ++k) {
-    const double s = double(k) / double(sink.steps);
+    const real s = real(k) / real(sink.steps);
     status = emit(ws, look, look.t + s * look.h, s, look.h, ws.contact.mode, sink);
   }
   while (status == Status::running && sink.steps == 0 && sink.at < sink.count && sink.times[sink.at] < end) {
-    const double t = sink.times[sink.at], s = smaller(1.0, larger(0.0, (t - look.t) / look.h));
+    const real t = sink.times[sink.at], s = smaller(1.0, larger(0.0, (t - look.t) / look.h));
     status = emit(ws, look, t, s, look.h, ws.contact.mode, sink);
   }
   return status;
 }
 
 /// Rows at its end, which the present state is.
-inline Status emit_end(Run& ws, const Look& step, double end, Sink& sink) {
+inline Status emit_end(Run& ws, const Look& step, real end, Sink& sink) {
   const Look look{end, 0, step.change, step.given, step.state, step.torque, 1};
   Status status = Status::running;
   if (sink.steps > 0) return emit(ws, look, end, 0, step.h, ws.fixed.mode, sink);
@@ -42,7 +42,7 @@ inline Status emit_end(Run& ws, const Look& step, double end, Sink& sink) {
 
 /// One row of the present.
 inline Status show_present(Run& ws, Sink& sink) {
-  Fixed<double>& f = ws.fixed;
+  Fixed<real>& f = ws.fixed;
   for (int d = 0; d < ws.n_directions; ++d) {
     f.start_rate[d] = rate_row(ws.sys, d).times(ws.v), f.rate_change[d] = 0;
     for (int p = 0; p < ws.sys.prescribed; ++p) f.start_rate[d] += prescribed_share(ws, d, p) * f.given[p];
@@ -63,7 +63,7 @@ inline Status emit_present(Run& ws, Sink& sink) {
 inline Status begin(Run& ws, Sink& sink) {
   const Status status = advance_by_events(ws, ws.started ? ws.time : ws.options.t_start, sink);
   if (status != Status::done) return status;
-  Fixed<double>& f = ws.fixed;
+  Fixed<real>& f = ws.fixed;
   f.time = f.origin = ws.time;
   f.before = 0, f.count = f.impacts = 0, f.fresh = 1;
   for (int p = 0; p < ws.sys.prescribed; ++p) f.given[p] = ws.in.prescribed[p];
@@ -83,7 +83,7 @@ inline Status begin(Run& ws, Sink& sink) {
 
 /// What must be there before a step.
 inline Status make_ready(Run& ws, Sink& sink) {
-  Fixed<double>& f = ws.fixed;
+  Fixed<real>& f = ws.fixed;
   if (!f.ready && !takes(ws)) return Status::refused;
   // its first row is there once, where rows are those of steps
   const bool begun = ws.started && f.time == ws.time;
@@ -105,8 +105,8 @@ inline Status what_is_spent(const Run& ws, const Sink& sink) {
 }
 
 /// The step that was made becomes the present: its rows, its energies, its modes and pieces.
-inline Status finish_step(Run& ws, double h, double end, Sink& sink) {
-  Fixed<double>& f = ws.fixed;
+inline Status finish_step(Run& ws, real h, real end, Sink& sink) {
+  Fixed<real>& f = ws.fixed;
   const Look look{ws.time, h, f.change, f.given_change, f.state_change, f.mean};
   Status shown = emit_inside(ws, look, end, sink);
   if (shown != Status::running) return shown;
@@ -123,16 +123,16 @@ inline Status finish_step(Run& ws, double h, double end, Sink& sink) {
 
 /// The part of a step that ends where a stop is met: its motion is one of its own, and meets the end beside where the
 /// whole step did. A secant from there. `running`: the part is made.
-inline Status make_part(Run& ws, const Meeting& met, double h, double& part) {
-  const double start = ws.time;
-  double before = h, gap_before = gap_behind(ws, met.contact, met.side, h);
+inline Status make_part(Run& ws, const Meeting& met, real h, real& part) {
+  const real start = ws.time;
+  real before = h, gap_before = gap_behind(ws, met.contact, met.side, h);
   for (int round = 0; round < most_tries; ++round) {
     rewind(ws);
     const Status status = make_step(ws, start, part, start + part);
     if (status != Status::running) return status;
-    const double gap = gap_behind(ws, met.contact, met.side, part);
+    const real gap = gap_behind(ws, met.contact, met.side, part);
     if (abs(gap) <= stop_noise(ws, met.contact) || round + 1 == most_tries) break;
-    const double next = part - gap * (part - before) / (gap - gap_before);
+    const real next = part - gap * (part - before) / (gap - gap_before);
     if (!(next > 0) || next > h || next == part) break;
     before = part, gap_before = gap, part = next;
   }
@@ -140,9 +140,9 @@ inline Status make_part(Run& ws, const Meeting& met, double h, double& part) {
 }
 
 /// Up to a meeting inside the step that was made, which is none then, and the impact there.
-inline Status take_impact(Run& ws, const Meeting& met, double h, Sink& sink) {
-  const double start = ws.time;
-  double part = met.share * h;
+inline Status take_impact(Run& ws, const Meeting& met, real h, Sink& sink) {
+  const real start = ws.time;
+  real part = met.share * h;
   if (part > 1e-9 * ws.options.step) {
     const Status made = make_part(ws, met, h, part);
     if (made != Status::running) return made;
@@ -156,11 +156,11 @@ inline Status take_impact(Run& ws, const Meeting& met, double h, Sink& sink) {
 }
 
 /// One step onto the grid, onto the end where that comes before, or up to an impact. `running`: the run goes on.
-inline Status take_step(Run& ws, double t_end, Sink& sink) {
-  Fixed<double>& f = ws.fixed;
-  const double step = ws.options.step, grid = f.origin + double(f.count + 1) * step;
+inline Status take_step(Run& ws, real t_end, Sink& sink) {
+  Fixed<real>& f = ws.fixed;
+  const real step = ws.options.step, grid = f.origin + real(f.count + 1) * step;
   const bool last = grid > t_end - 1e-9 * step, cut = grid > t_end + 1e-9 * step;
-  const double end = last ? t_end : grid, h = cut || f.impacts > 0 ? end - ws.time : step;
+  const real end = last ? t_end : grid, h = cut || f.impacts > 0 ? end - ws.time : step;
   keep_outside(ws);
   Status status = make_step(ws, ws.time, h, end);
   if (status != Status::running) return status;
@@ -180,7 +180,7 @@ inline Status take_step(Run& ws, double t_end, Sink& sink) {
 namespace clutchwork {
 
 template <class T>
-Status advance_fixed(Workspace<T>& ws, double t_end, Sink& sink, bool to_event) {
+Status advance_fixed(Workspace<T>& ws, real t_end, Sink& sink, bool to_event) {
   const int waiting = ws.events.n;
   Status status = fixed::make_ready(ws, sink);
   if (status == Status::running) status = fixed::emit_present(ws, sink);

@@ -8,11 +8,11 @@ namespace clutchwork::fixed {
 /// Minimise 1/2 x'(W + E)x + g'x over lower <= x <= upper; E is the diagonal `weight`. Views into memory of the caller.
 struct Boxes {
   int n;
-  const double* mobility;  ///< W, n x n
-  const double *gradient, *lower, *upper, *weight;
-  double *x, *slope;  ///< solution, and W x + g: the slips at the end of the step
-  int* side;          ///< 0 free, -1 at lower, 1 at upper: a guess, then the solution
-  double *solved, *factor;
+  const real* mobility;  ///< W, n x n
+  const real *gradient, *lower, *upper, *weight;
+  real *x, *slope;  ///< solution, and W x + g: the slips at the end of the step
+  int* side;        ///< 0 free, -1 at lower, 1 at upper: a guess, then the solution
+  real *solved, *factor;
   int* list;
 };
 
@@ -20,9 +20,9 @@ struct Boxes {
 inline constexpr int most_sets = 45;
 
 /// W x + g of contact i.
-inline double slope_of(const Boxes& p, int i) {
-  double s = p.gradient[i];
-  const double* row = p.mobility + i * p.n;
+inline real slope_of(const Boxes& p, int i) {
+  real s = p.gradient[i];
+  const real* row = p.mobility + i * p.n;
   for (int j = 0; j < p.n; ++j) s += row[j] * p.x[j];
   return s;
 }
@@ -30,11 +30,11 @@ inline double slope_of(const Boxes& p, int i) {
 /// Factor of W + E of the m free contacts of the list, by rows of the length m. False: it is not positive definite.
 inline bool factor_free(const Boxes& p, int m) {
   for (int a = 0; a < m; ++a) {
-    const double* own = p.mobility + p.list[a] * p.n;
-    double* row = p.factor + a * m;
+    const real* own = p.mobility + p.list[a] * p.n;
+    real* row = p.factor + a * m;
     for (int b = 0; b <= a; ++b) {
-      const double* other = p.factor + b * m;
-      double s = own[p.list[b]] + (a == b ? p.weight[p.list[a]] : 0.0);
+      const real* other = p.factor + b * m;
+      real s = own[p.list[b]] + (a == b ? p.weight[p.list[a]] : 0.0);
       for (int k = 0; k < b; ++k) s -= row[k] * other[k];
       if (a == b && !(s > 0)) return false;
       row[b] = a == b ? sqrt(s) : s / other[b];
@@ -45,14 +45,14 @@ inline bool factor_free(const Boxes& p, int m) {
 
 /// solved := -(W + E)^-1 solved of the free contacts.
 inline void solve_free(const Boxes& p, int m) {
-  double* y = p.solved;
+  real* y = p.solved;
   for (int a = 0; a < m; ++a) {
-    double s = -y[a];
+    real s = -y[a];
     for (int k = 0; k < a; ++k) s -= p.factor[a * m + k] * y[k];
     y[a] = s / p.factor[a * m + a];
   }
   for (int a = m - 1; a >= 0; --a) {
-    double s = y[a];
+    real s = y[a];
     for (int k = a + 1; k < m; ++k) s -= p.factor[k * m + a] * y[k];
     y[a] = s / p.factor[a * m + a];
   }
@@ -76,8 +76,8 @@ inline int solve_set(const Boxes& p) {
 inline int wanted_side(const Boxes& p, int i) {
   if (p.side[i] == 0) return p.x[i] < p.lower[i] ? -1 : p.x[i] > p.upper[i] ? 1 : 0;
   if (!(p.lower[i] < p.upper[i])) return p.side[i];
-  const double* row = p.mobility + i * p.n;
-  double s = p.gradient[i] + p.weight[i] * p.x[i], size = abs(p.gradient[i]);
+  const real* row = p.mobility + i * p.n;
+  real s = p.gradient[i] + p.weight[i] * p.x[i], size = abs(p.gradient[i]);
   for (int j = 0; j < p.n; ++j) s += row[j] * p.x[j], size += abs(row[j] * p.x[j]);
   // what round-off makes of a slip decides nothing
   return s * p.side[i] > 1e-14 * size ? 0 : p.side[i];

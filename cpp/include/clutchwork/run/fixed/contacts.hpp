@@ -15,7 +15,7 @@ inline constexpr int most_rounds = 4, most_loaded_rounds = 12;
 /// Which contacts are pressed in the middle of the step.
 inline void see_loads(Run& ws) {
   for (int c = 0; c < ws.sys.contacts; ++c) {
-    Branch<double>& b = ws.branch[ws.sys.elements + c];
+    Branch<real>& b = ws.branch[ws.sys.elements + c];
     ws.contact.pressed[c] = b.pressed = load_of(ws, c) > 0;
     ws.contact.loaded[c] = is_closed(ws, c);
   }
@@ -24,18 +24,18 @@ inline void see_loads(Run& ws) {
 /// Kinetic and static torque of a contact in the middle of the step, against slip backward and forward.
 /// docs/theory/fixed-steps.md (6)
 inline void see_contact(Run& ws, int c) {
-  Fixed<double>& f = ws.fixed;
+  Fixed<real>& f = ws.fixed;
   const int d = int(ws.sys.elements) + c, mode = ws.contact.mode[c];
-  double *kinetic = f.kinetic + 2 * c, *limit = f.limit + 2 * c;
+  real *kinetic = f.kinetic + 2 * c, *limit = f.limit + 2 * c;
   kinetic[0] = kinetic[1] = limit[0] = limit[1] = 0;
-  Branch<double>& b = ws.branch[d];
+  Branch<real>& b = ws.branch[d];
   if (!ws.contact.loaded[c]) return;
   if (ws.contact.fault[c] == cannot_unlock && mode == locked) {
     kinetic[0] = kinetic[1] = limit[0] = limit[1] = infinity;
     return;
   }
   if (!b.pressed || b.compliant) return;
-  const double size = mode == locked || mode == open ? 0.0 : larger(mode * f.predicted[d], 0.0);
+  const real size = mode == locked || mode == open ? 0.0 : larger(mode * f.predicted[d], 0.0);
   if (f.bends[d] == settling) ws.piece[d] = b.piece = sliding_piece(ws, d, size);
   if (ws.loads.of[c] >= 0) return;
   b.sign = forward;
@@ -49,9 +49,9 @@ inline void see_contact(Run& ws, int c) {
 }
 
 /// Bounds of the impulse of a contact.
-inline void set_box(Run& ws, int c, double h) {
-  Fixed<double>& f = ws.fixed;
-  const double *kinetic = f.kinetic + 2 * c, *limit = f.limit + 2 * c;
+inline void set_box(Run& ws, int c, real h) {
+  Fixed<real>& f = ws.fixed;
+  const real *kinetic = f.kinetic + 2 * c, *limit = f.limit + 2 * c;
   auto torque = [&](int way) {
     if (f.box[c] == at_rest) return limit[way];
     // one that breaks away holds its static torque up to there
@@ -66,27 +66,27 @@ inline void set_box(Run& ws, int c, double h) {
 
 /// Where in the step a contact breaks away that was locked in the last one, -1/2 to 1/2: there the torque that would
 /// hold it passes what it can hold, both as lines through the middles of the two steps. docs/theory/fixed-steps.md (8)
-inline double share_at_limit(const Run& ws, int c, int way, double h) {
-  const Fixed<double>& f = ws.fixed;
+inline real share_at_limit(const Run& ws, int c, int way, real h) {
+  const Fixed<real>& f = ws.fixed;
   if (f.before == 0 || f.time != ws.time) return 0;
   const int sign = way == 0 ? 1 : -1;
-  const double needed = sign * (f.impulse[c] - f.end_slip[c] / f.mobility[c * ws.sys.contacts + c]) / h;
-  const double before = sign * f.torque[ws.sys.elements + c];
-  const double over = needed - f.limit[2 * c + way], rise = over - (before - f.held[2 * c + way]);
+  const real needed = sign * (f.impulse[c] - f.end_slip[c] / f.mobility[c * ws.sys.contacts + c]) / h;
+  const real before = sign * f.torque[ws.sys.elements + c];
+  const real over = needed - f.limit[2 * c + way], rise = over - (before - f.held[2 * c + way]);
   if (!(rise > 0)) return 0;
   return larger(-0.5, smaller(0.5, 0.5 - 0.5 * (1 + f.before / h) * over / rise));
 }
 
 /// Contacts whose torques say otherwise than their boxes: they get the other one. Whether there are any.
 /// docs/theory/fixed-steps.md, rule 3
-inline bool change_boxes(Run& ws, double h) {
-  Fixed<double>& f = ws.fixed;
+inline bool change_boxes(Run& ws, real h) {
+  Fixed<real>& f = ws.fixed;
   bool any = false;
   for (int c = 0; c < ws.sys.contacts; ++c) {
     const int side = f.side[c], way = side < 0 ? 1 : 0;
     // both boxes are the same
     if (side == 0 || f.box[c] == slips_on || !(f.kinetic[2 * c + way] < f.limit[2 * c + way])) continue;
-    const double start = f.start_rate[ws.sys.elements + c], end = f.end_slip[c];
+    const real start = f.start_rate[ws.sys.elements + c], end = f.end_slip[c];
     const bool breaks = f.box[c] == at_rest && end != 0, turns = f.box[c] == sliding && start * end < 0;
     if (!breaks && !turns) continue;
     if (breaks) f.share[c] = f.box[c] == at_rest && ws.contact.mode[c] == locked ? share_at_limit(ws, c, way, h) : 0;
@@ -98,10 +98,10 @@ inline bool change_boxes(Run& ws, double h) {
 }
 
 /// Impulses of all contacts, for slips at the end without them in `gradient`. False: they were not found.
-inline bool find_impulses(Run& ws, double h, double tolerance) {
-  Fixed<double>& f = ws.fixed;
+inline bool find_impulses(Run& ws, real h, real tolerance) {
+  Fixed<real>& f = ws.fixed;
   const int nc = int(ws.sys.contacts), rounds = ws.sys.loads > 0 ? most_loaded_rounds : most_rounds;
-  double largest = 0;
+  real largest = 0;
   for (int c = 0; c < nc; ++c) {
     f.box[c] = ws.contact.mode[c] == locked || ws.contact.mode[c] == open ? at_rest : sliding;
     set_box(ws, c, h);
@@ -111,11 +111,11 @@ inline bool find_impulses(Run& ws, double h, double tolerance) {
     const int mode = ws.contact.mode[c];
     // no guess is at a bound that is not there
     f.side[c] = mode == forward && f.lower[c] > -infinity ? -1 : mode == backward && f.upper[c] < infinity ? 1 : 0;
-    const double most = larger(-f.lower[c], f.upper[c]);
+    const real most = larger(-f.lower[c], f.upper[c]);
     if (most < infinity) largest = larger(largest, most);
   }
   for (int c = 0; c < nc; ++c) {
-    const double own = larger(-f.lower[c], f.upper[c]), ratio = own > 0 && own < infinity ? largest / own : 1;
+    const real own = larger(-f.lower[c], f.upper[c]), ratio = own > 0 && own < infinity ? largest / own : 1;
     f.weight[c] = 1e-10 * f.mobility[c * nc + c] * smaller(ratio, 1e6);
   }
   const Boxes boxes{nc,        f.mobility, f.gradient, f.lower,  f.upper,       f.weight,
@@ -135,13 +135,13 @@ inline bool find_impulses(Run& ws, double h, double tolerance) {
 }
 
 /// Mode of a contact behind the step.
-inline int mode_behind(const Run& ws, int c, double tolerance) {
-  const Fixed<double>& f = ws.fixed;
+inline int mode_behind(const Run& ws, int c, real tolerance) {
+  const Fixed<real>& f = ws.fixed;
   const int mode = ws.contact.mode[c];
   // one that has no load stays closed until it is left
   if (is_stop(ws, c)) return ws.contact.loaded[c] && free_way(ws, c) * f.end_slip[c] <= tolerance ? locked : open;
   if (ws.contact.compliant[c] && !contact_one_way(ws, c)) return mode;
-  const double slip = f.end_slip[c];
+  const real slip = f.end_slip[c];
   if (is_rigid(ws, c) || !ws.contact.loaded[c]) {
     if (abs(slip) > tolerance) return slip > 0 ? forward : backward;
     return ws.contact.loaded[c] ? locked : mode == locked ? open : mode;
@@ -153,12 +153,12 @@ inline int mode_behind(const Run& ws, int c, double tolerance) {
 
 /// Where in the step a contact comes to rest or turns: by its slip with the kinetic torque alone.
 /// docs/theory/fixed-steps.md (7)
-inline double share_at_zero(const Run& ws, int c, double h) {
-  const Fixed<double>& f = ws.fixed;
+inline real share_at_zero(const Run& ws, int c, real h) {
+  const Fixed<real>& f = ws.fixed;
   const int nc = int(ws.sys.contacts), way = f.start_rate[ws.sys.elements + c] > 0 ? 1 : 0;
-  const double start = f.start_rate[ws.sys.elements + c];
-  const double alone = (way ? -1 : 1) * h * f.kinetic[2 * c + way];
-  const double end = f.end_slip[c] + f.mobility[c * nc + c] * (alone - f.impulse[c]);
+  const real start = f.start_rate[ws.sys.elements + c];
+  const real alone = (way ? -1 : 1) * h * f.kinetic[2 * c + way];
+  const real end = f.end_slip[c] + f.mobility[c * nc + c] * (alone - f.impulse[c]);
   if (start == 0 || !(start * end < 0)) return 1;
   return start / (start - end);
 }

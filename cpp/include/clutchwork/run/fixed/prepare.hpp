@@ -55,7 +55,7 @@ inline Refusal refusal_of(const Run& ws, int d) {
 inline bool takes(Run& ws) {
   const System& sys = ws.sys;
   auto refuse = [&](int component, Refusal why) {
-    ws.detail.component = component, ws.detail.value = double(int(why));
+    ws.detail.component = component, ws.detail.value = real(int(why));
     return false;
   };
   if (with_draws && sys.draws > 0) return refuse(-1, Refusal::flows);
@@ -68,7 +68,7 @@ inline bool takes(Run& ws) {
 
 /// The branches of all directions, each at the place of its direction, and what they ask for in every step.
 inline void pack_all(Run& ws) {
-  Fixed<double>& f = ws.fixed;
+  Fixed<real>& f = ws.fixed;
   const int ne = int(ws.sys.elements);
   int block = 0;
   ws.n_rates = 0;
@@ -96,9 +96,9 @@ inline void pack_all(Run& ws) {
 
 /// Factor of M - h/2 sum(slope d'd), the answers to the impulses of the contacts and their mobility.
 /// docs/theory/fixed-steps.md (5)
-inline bool factor_step(Run& ws, double h) {
+inline bool factor_step(Run& ws, real h) {
   const System& sys = ws.sys;
-  Fixed<double>& f = ws.fixed;
+  Fixed<real>& f = ws.fixed;
   const int nv = int(sys.speeds), ne = int(sys.elements), nc = int(sys.contacts);
   for (int i = 0; i < nv * nv; ++i) f.factor[i] = 0;
   for (int i = 0; i < nv; ++i) {
@@ -115,7 +115,7 @@ inline bool factor_step(Run& ws, double h) {
   }
   if (!cholesky(nv, f.factor, nv)) return false;
   for (int c = 0; c < nc; ++c) {
-    double* x = f.answer + c * nv;
+    real* x = f.answer + c * nv;
     const auto row = rate_row(sys, ne + c);
     for (int i = 0; i < nv; ++i) x[i] = 0;
     for (int k = 0; k < row.n; ++k) x[row.column[k]] = row.value[k];

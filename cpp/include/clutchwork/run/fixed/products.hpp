@@ -5,22 +5,22 @@
 /// Rates of all directions and speeds of all nodes from speeds: of few speeds by whole rows, which need no indices.
 namespace clutchwork::fixed {
 
-using Run = Workspace<double>;
+using Run = Workspace<real>;
 
 /// y := rows x, for n rows of N numbers.
 template <int N>
-CLUTCHWORK_INLINE void multiply_few(int n, const double* row, const double* x, double* y) {
-  double at[N];
+CLUTCHWORK_INLINE void multiply_few(int n, const real* row, const real* x, real* y) {
+  real at[N];
   for (int k = 0; k < N; ++k) at[k] = x[k];
   for (int i = 0; i < n; ++i, row += N) {
-    double s = row[0] * at[0];
+    real s = row[0] * at[0];
     for (int k = 1; k < N; ++k) s += row[k] * at[k];
     y[i] = s;
   }
 }
 /// The same for as many numbers as there are speeds; `sparse(i)` is a row where these are more than a few.
 template <class Row>
-CLUTCHWORK_INLINE void multiply(int nv, int n, const double* rows, Row&& sparse, const double* x, double* y) {
+CLUTCHWORK_INLINE void multiply(int nv, int n, const real* rows, Row&& sparse, const real* x, real* y) {
   static_assert(most_whole_speeds == 4);
   switch (nv) {
     case 1:
@@ -37,14 +37,14 @@ CLUTCHWORK_INLINE void multiply(int nv, int n, const double* rows, Row&& sparse,
 }
 
 /// Rates of all directions by speeds, without the prescribed ones.
-inline void rates_by(const Run& ws, const double* speeds, double* rates) {
+inline void rates_by(const Run& ws, const real* speeds, real* rates) {
   multiply(
       int(ws.sys.speeds), ws.n_directions, ws.fixed.rate_rows, [&](int d) { return rate_row(ws.sys, d); }, speeds,
       rates);
 }
 
 /// Speeds of all nodes, or what they gain.
-inline void nodes_by(const Run& ws, const double* speeds, const double* given, double* nodes) {
+inline void nodes_by(const Run& ws, const real* speeds, const real* given, real* nodes) {
   const System& sys = ws.sys;
   multiply(
       int(sys.speeds), int(sys.nodes), ws.fixed.node_rows, [&](int n) { return basis_row(sys, n); }, speeds, nodes);
@@ -57,7 +57,7 @@ inline void nodes_by(const Run& ws, const double* speeds, const double* given, d
 inline void fill_rows(Run& ws) {
   const int nv = int(ws.sys.speeds);
   if (nv > most_whole_speeds) return;
-  auto fill = [&](double* whole, const auto& row) {
+  auto fill = [&](real* whole, const auto& row) {
     for (int k = 0; k < nv; ++k) whole[k] = 0;
     for (int k = 0; k < row.n; ++k) whole[row.column[k]] = row.value[k];
   };

@@ -13,10 +13,10 @@ namespace clutchwork::fixed {
 
 /// Speeds, states and rates that are expected in the middle of the step, from the last one; what round-off makes of a
 /// shaft at rest is no rate. docs/theory/fixed-steps.md (3)
-inline void predict(Run& ws, double h, double tolerance) {
+inline void predict(Run& ws, real h, real tolerance) {
   const System& sys = ws.sys;
-  Fixed<double>& f = ws.fixed;
-  const double share = f.time == ws.time && f.before > 0 ? 0.5 * h / f.before : 0;
+  Fixed<real>& f = ws.fixed;
+  const real share = f.time == ws.time && f.before > 0 ? 0.5 * h / f.before : 0;
   for (int i = 0; i < sys.speeds; ++i) f.ahead[i] = ws.v[i] + share * f.gain[i];
   for (int i = 0; i < sys.states; ++i) f.state_ahead[i] = ws.state[i] + share * f.state_gain[i];
   rates_by(ws, f.ahead, f.predicted), rates_by(ws, ws.v, f.start_rate);
@@ -30,7 +30,7 @@ inline void predict(Run& ws, double h, double tolerance) {
 }
 
 /// Signals at time t, beyond their knots where they have passed one.
-inline void read_signals(Run& ws, double t) {
+inline void read_signals(Run& ws, real t) {
   // which contacts are pressed and which fail is seen in every step
   ws.in.next_knot > t ? inputs_at(ws, t) : load_inputs(ws, t);
 }
@@ -46,7 +46,7 @@ inline void see_middle(Run& ws) {
 
 /// What a step changes beside its results: segments of signals, faults and their events.
 inline void keep_outside(Run& ws) {
-  Fixed<double>& f = ws.fixed;
+  Fixed<real>& f = ws.fixed;
   for (int i = 0; i < ws.sys.inputs; ++i) f.segment[i] = ws.in.signal[i].segment;
   for (int c = 0; c < ws.sys.contacts; ++c) f.fault[c] = ws.contact.fault[c];
   f.failed = ws.contact.failed, f.events = ws.events.n, f.counted = ws.statistics.events;
@@ -59,7 +59,7 @@ inline void rewind_signals(Run& ws) {
 }
 /// All of it: the step that was made is none.
 inline void rewind(Run& ws) {
-  Fixed<double>& f = ws.fixed;
+  Fixed<real>& f = ws.fixed;
   for (int c = 0; c < ws.sys.contacts; ++c) ws.contact.fault[c] = f.fault[c];
   ws.contact.failed = f.failed, ws.events.n = f.events, ws.statistics.events = f.counted;
   rewind_signals(ws);
@@ -74,8 +74,8 @@ inline void see_faults(Run& ws) {
 }
 
 /// Prescribed speeds at the end of the step.
-inline void follow_prescribed(Run& ws, double t) {
-  Fixed<double>& f = ws.fixed;
+inline void follow_prescribed(Run& ws, real t) {
+  Fixed<real>& f = ws.fixed;
   if (ws.in.next_knot < t) load_inputs(ws, t);
   for (int p = 0; p < ws.sys.prescribed; ++p)
     f.given_change[p] = signal_value(ws, int(ws.sys.prescribed_input[p]), t) - f.given[p];
@@ -83,21 +83,21 @@ inline void follow_prescribed(Run& ws, double t) {
 
 /// The change of the speeds without the impulses of contacts, and the slips at the end with it.
 /// docs/theory/fixed-steps.md (5)
-inline void move_freely(Run& ws, double h) {
+inline void move_freely(Run& ws, real h) {
   const System& sys = ws.sys;
-  Fixed<double>& f = ws.fixed;
+  Fixed<real>& f = ws.fixed;
   const int nv = int(sys.speeds), np = int(sys.prescribed), ne = int(sys.elements), nc = int(sys.contacts);
-  double* x = f.change;
+  real* x = f.change;
   for (int i = 0; i < nv; ++i) {
     x[i] = 0;
     for (int p = 0; p < np; ++p) x[i] -= sys.mass_prescribed[i * np + p] * f.given_change[p];
   }
   for (int d = 0; d < ws.n_directions; ++d) {
-    double given = 0;
+    real given = 0;
     for (int p = 0; p < np; ++p) given += prescribed_share(ws, d, p) * f.given_change[p];
     f.rate_change[d] = given;
     if (!is_smooth(ws, d)) continue;
-    const double impulse = h * (f.force[d] + f.kept[d] * (f.start_rate[d] + 0.5 * given));
+    const real impulse = h * (f.force[d] + f.kept[d] * (f.start_rate[d] + 0.5 * given));
     const auto row = rate_row(sys, d);
     for (int k = 0; k < row.n; ++k) x[row.column[k]] += impulse * row.value[k];
   }
@@ -108,12 +108,12 @@ inline void move_freely(Run& ws, double h) {
 
 /// Speeds without inertia follow torques at once, of which a step knows those in its middle: they go on from the
 /// middles of two steps, and rates with them. docs/theory/fixed-steps.md, rule 5
-inline void settle_massless(Run& ws, double h) {
+inline void settle_massless(Run& ws, real h) {
   const System& sys = ws.sys;
-  Fixed<double>& f = ws.fixed;
+  Fixed<real>& f = ws.fixed;
   for (int i = 0; i < sys.speeds; ++i) {
     if (sys.massless[i] == 0) continue;
-    const double middle = 0.5 * f.change[i], last = -0.5 * f.gain[i];
+    const real middle = 0.5 * f.change[i], last = -0.5 * f.gain[i];
     f.change[i] = middle + h / (h + f.before) * (middle - last);
   }
   for (int d = 0; d < ws.n_directions; ++d) {
@@ -124,9 +124,9 @@ inline void settle_massless(Run& ws, double h) {
 }
 
 /// Speeds, torques and states with the impulses.
-inline void move(Run& ws, double h) {
+inline void move(Run& ws, real h) {
   const System& sys = ws.sys;
-  Fixed<double>& f = ws.fixed;
+  Fixed<real>& f = ws.fixed;
   const int nv = int(sys.speeds), ne = int(sys.elements);
   for (int c = 0; c < sys.contacts; ++c) axpy(nv, f.impulse[c], f.answer + c * nv, f.change);
   rates_by(ws, f.change, f.gained);
@@ -142,11 +142,11 @@ inline void move(Run& ws, double h) {
 }
 
 /// Contacts that only join prescribed shafts: their torque moves nothing. False: a freewheel is turned backward.
-inline bool hold_rigid(Run& ws, double h, double tolerance) {
-  Fixed<double>& f = ws.fixed;
+inline bool hold_rigid(Run& ws, real h, real tolerance) {
+  Fixed<real>& f = ws.fixed;
   for (int c = 0; c < ws.sys.contacts; ++c) {
     if (!is_rigid(ws, c) || !ws.contact.loaded[c] || ws.loads.of[c] >= 0) continue;
-    const double slip = f.end_slip[c];
+    const real slip = f.end_slip[c];
     if (free_way(ws, c) * slip < -1e3 * tolerance) return ws.detail.component = int(ws.sys.elements) + c, false;
     if (abs(slip) > tolerance && free_way(ws, c) * slip <= 0)
       f.impulse[c] = slip > 0 ? -h * f.kinetic[2 * c + 1] : h * f.kinetic[2 * c];
@@ -157,7 +157,7 @@ inline bool hold_rigid(Run& ws, double h, double tolerance) {
 /// Whether the laws of the contacts know the slips at the end of the step; else `detail` tells which does not.
 inline bool are_known(Run& ws) {
   for (int c = 0; c < ws.sys.contacts; ++c) {
-    double seen = 0;
+    real seen = 0;
     if (!ws.contact.loaded[c] || table_room(ws, c, ws.fixed.end_slip[c], seen) >= 0) continue;
     ws.detail.component = int(ws.sys.elements) + c, ws.detail.value = seen;
     return false;
@@ -166,8 +166,8 @@ inline bool are_known(Run& ws) {
 }
 
 /// Freewheels that hold no more give way for good: whether there are any. docs/theory/contacts.md, rule 3
-inline bool gives_way(Run& ws, double tolerance) {
-  const Fixed<double>& f = ws.fixed;
+inline bool gives_way(Run& ws, real tolerance) {
+  const Fixed<real>& f = ws.fixed;
   bool any = false;
   for (int c = 0; c < ws.sys.contacts; ++c) {
     const bool held = ws.contact.loaded[c] && f.side[c] == 1 && f.lower[c] < f.upper[c];
@@ -179,9 +179,9 @@ inline bool gives_way(Run& ws, double tolerance) {
 }
 
 /// Everything of one step but its taking over, again without each freewheel that gives way. `running`: it is there.
-inline Status make_step(Run& ws, const double t, const double h, const double end) {
-  Fixed<double>& f = ws.fixed;
-  const double tolerance = slip_tolerance(ws);
+inline Status make_step(Run& ws, const real t, const real h, const real end) {
+  Fixed<real>& f = ws.fixed;
+  const real tolerance = slip_tolerance(ws);
   read_signals(ws, t + 0.5 * h);
   predict(ws, h, tolerance);
   see_middle(ws);
@@ -201,7 +201,7 @@ inline Status make_step(Run& ws, const double t, const double h, const double en
   move(ws, h);
   if (!are_known(ws)) return Status::out_of_table;
   for (int c = 0; c < ws.sys.contacts; ++c) f.mode[c] = mode_behind(ws, c, tolerance);
-  double sum = 0;
+  real sum = 0;
   for (int i = 0; i < ws.sys.speeds; ++i) sum += f.change[i] * 0;
   for (int i = 0; i < ws.sys.states; ++i) sum += f.state_change[i] * 0;
   return sum == 0 ? Status::running : Status::not_finite;
@@ -210,8 +210,8 @@ inline Status make_step(Run& ws, const double t, const double h, const double en
 /// The step is taken: speeds, states, angles, work and history.
 inline void take_over(Run& ws, const Look& look) {
   const System& sys = ws.sys;
-  Fixed<double>& f = ws.fixed;
-  if (ws.options.work) energies_until(ws, look, 1.0, [&](int i, double energy) { work_of(ws, i) += energy; });
+  Fixed<real>& f = ws.fixed;
+  if (ws.options.work) energies_until(ws, look, 1.0, [&](int i, real energy) { work_of(ws, i) += energy; });
   if (ws.options.angles) angles_at(ws, look, 1.0, ws.angle);
   for (int i = 0; i < sys.speeds; ++i) ws.v[i] += f.change[i], f.gain[i] = f.change[i];
   for (int i = 0; i < sys.states; ++i) ws.state[i] += f.state_change[i], f.state_gain[i] = f.state_change[i];
@@ -228,14 +228,14 @@ inline Cause cause_of(const Run& ws, int c, int from) {
 }
 
 /// Report the contacts that have changed, in the order of their instants, and give them their modes.
-inline void report(Run& ws, const Look& look, double end) {
-  Fixed<double>& f = ws.fixed;
+inline void report(Run& ws, const Look& look, real end) {
+  Fixed<real>& f = ws.fixed;
   const int ne = int(ws.sys.elements), nc = int(ws.sys.contacts);
   int n = 0;
   for (int c = 0; c < nc; ++c) {
     if (f.mode[c] == ws.contact.mode[c]) continue;
     const bool was_locked = ws.contact.mode[c] == locked;
-    const double s = was_locked ? larger(0.0, f.box[c] == slips_on ? f.share[c] : 0) : share_at_zero(ws, c, look.h);
+    const real s = was_locked ? larger(0.0, f.box[c] == slips_on ? f.share[c] : 0) : share_at_zero(ws, c, look.h);
     f.instant[c] = smaller(look.t + s * look.h, end);
     int at = n++;
     for (; at > 0 && f.instant[f.list[at - 1]] > f.instant[c]; --at) f.list[at] = f.list[at - 1];
@@ -243,7 +243,7 @@ inline void report(Run& ws, const Look& look, double end) {
   }
   if (n == 0) return;
   inputs_at(ws, end);
-  const double energy = kinetic_energy(ws);
+  const real energy = kinetic_energy(ws);
   for (int k = 0; k < n; ++k) {
     const int c = f.list[k], from = ws.contact.mode[c], to = f.mode[c];
     ws.contact.mode[c] = to;
@@ -251,7 +251,7 @@ inline void report(Run& ws, const Look& look, double end) {
     // what was open and slips now without a load tells nothing
     if (from == open && to != locked) continue;
     ws.time = f.instant[c];
-    const double acceleration = f.rate_change[ne + c] / look.h;
+    const real acceleration = f.rate_change[ne + c] / look.h;
     record(ws, {c, from, to, cause_of(ws, c, from), acceleration, f.torque[ne + c], f.mean[ne + c], energy, energy});
   }
 }
