@@ -1,5 +1,5 @@
 #pragma once
-#include <clutchwork/components/scalar.hpp>
+#include <clutchwork/components/single.hpp>
 
 /// Impulses of all contacts over one step, within their bounds, by a primal-dual active set:
 /// docs/theory/fixed-steps.md
@@ -80,7 +80,7 @@ inline int wanted_side(const Boxes& p, int i) {
   real s = p.gradient[i] + p.weight[i] * p.x[i], size = abs(p.gradient[i]);
   for (int j = 0; j < p.n; ++j) s += row[j] * p.x[j], size += abs(row[j] * p.x[j]);
   // what round-off makes of a slip decides nothing
-  return s * p.side[i] > 1e-14 * size ? 0 : p.side[i];
+  return s * p.side[i] > roundoff<real>(1e-14, 5e-6) * size ? 0 : p.side[i];
 }
 
 /// Take the weight out again: one step with the exact matrix, within the bounds.

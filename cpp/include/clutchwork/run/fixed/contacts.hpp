@@ -116,7 +116,8 @@ inline bool find_impulses(Run& ws, real h, real tolerance) {
   }
   for (int c = 0; c < nc; ++c) {
     const real own = larger(-f.lower[c], f.upper[c]), ratio = own > 0 && own < infinity ? largest / own : 1;
-    f.weight[c] = 1e-10 * f.mobility[c * nc + c] * smaller(ratio, 1e6);
+    // as small as round-off allows: it moves the bounds that contacts see
+    f.weight[c] = roundoff<real>(1e-10, 1e-6) * f.mobility[c * nc + c] * smaller(ratio, roundoff<real>(1e6, 1e2));
   }
   const Boxes boxes{nc,        f.mobility, f.gradient, f.lower,  f.upper,       f.weight,
                     f.impulse, f.end_slip, f.side,     f.solved, f.free_factor, f.list};

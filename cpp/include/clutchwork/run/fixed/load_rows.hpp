@@ -8,14 +8,14 @@
 namespace clutchwork::fixed {
 
 /// Rate of direction d in the virtual motion of load l.
-inline real load_rate(const System& sys, int l, int d) {
+inline real load_rate(const SystemOf<real>& sys, int l, int d) {
   const int ne = int(sys.elements);
   return d < ne ? sys.load_element_rate[l * ne + d] : sys.load_contact_rate[l * sys.contacts + d - ne];
 }
 
 /// Once per run: what the changes of the speeds put on each load.
 inline void weigh_loads(Run& ws) {
-  const System& sys = ws.sys;
+  const auto& sys = ws.sys;
   Fixed<real>& f = ws.fixed;
   const int nv = int(sys.speeds), np = int(sys.prescribed);
   for (int l = 0; l < sys.loads; ++l) {
@@ -34,7 +34,7 @@ inline void weigh_loads(Run& ws) {
 
 /// Once per length of a step: the impulses of loads by those of contacts, what other torques answer included.
 inline void reach_loads(Run& ws, real h) {
-  const System& sys = ws.sys;
+  const auto& sys = ws.sys;
   Fixed<real>& f = ws.fixed;
   const int nv = int(sys.speeds), ne = int(sys.elements), nc = int(sys.contacts);
   for (int l = 0; l < sys.loads; ++l) {

@@ -12,7 +12,7 @@ enum Box : int { at_rest, sliding, slips_on, stops };
 
 /// The impulses of loads without those of contacts, where the changes without them are known.
 inline void see_free_loads(Run& ws, real h) {
-  const System& sys = ws.sys;
+  const auto& sys = ws.sys;
   Fixed<real>& f = ws.fixed;
   const int nv = int(sys.speeds), np = int(sys.prescribed);
   for (int l = 0; l < sys.loads; ++l) {
@@ -115,7 +115,7 @@ inline int see_bounds(Run& ws, real h, real tolerance, bool& moves) {
     const real ahead = most_impulse(ws, l, forward, load, h), behind = most_impulse(ws, l, backward, load, h);
     set_bounds(ws, c, ahead, behind, h);
     const real wanted = side == 0 ? larger(smaller(x, behind), -ahead) : side < 0 ? -ahead : behind;
-    moves = moves || abs(wanted - x) > (side == 0 ? 1e-12 : 1e-13) * size;
+    moves = moves || abs(wanted - x) > (side == 0 ? real(1e-12) : real(1e-13)) * size;
     if (size > 0) f.load_miss = larger(f.load_miss, abs(wanted - x) / size);
     if (side != 0) f.follower[n++] = l;
   }
@@ -137,7 +137,7 @@ inline void couple_bounds(Run& ws, const Boxes& p, real h, real tolerance, int n
       const Bound<real>& bound = bound_at(ws, l, -side);
       const real load = load_impulse(ws, l) / h;
       const int line = last_lines ? f.load_line[2 * l + (side < 0)] : bound.line_at(load);
-      f.load_matrix[a * n + b] = (a == b ? 1.0 : 0.0) - side * bound.slope[line] * answered(ws, p, l, from, m);
+      f.load_matrix[a * n + b] = real(a == b ? 1 : 0) - side * bound.slope[line] * answered(ws, p, l, from, m);
       f.load_off[a] = side * h * bound.on(line, load) - f.impulse[c];
     }
   }

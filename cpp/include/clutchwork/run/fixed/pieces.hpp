@@ -40,7 +40,7 @@ inline void cross_branch(Run& ws, Branch<real>& b) {
 
 /// All of them behind a step.
 inline void cross_pieces(Run& ws) {
-  const System& sys = ws.sys;
+  const auto& sys = ws.sys;
   for (int d = 0; d < ws.n_directions; ++d) {
     if (ws.fixed.bends[d] == crossing) cross_branch(ws, ws.branch[d]);
   }

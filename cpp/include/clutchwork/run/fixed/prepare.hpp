@@ -5,6 +5,7 @@
 #include <clutchwork/components/kinds.hpp>
 #include <clutchwork/components/pieces.hpp>
 #include <clutchwork/contacts/sticking.hpp>
+#include <clutchwork/contacts/stops.hpp>
 #include <clutchwork/motion/branches.hpp>
 #include <clutchwork/motion/shared.hpp>
 #include <clutchwork/run/fixed/load_rows.hpp>
@@ -40,7 +41,7 @@ inline bool has_teeth(int kind) {
 
 /// Why a direction is refused; `taken`: it is not.
 inline Refusal refusal_of(const Run& ws, int d) {
-  const System& sys = ws.sys;
+  const auto& sys = ws.sys;
   if (d < sys.elements) {
     const int kind = sys.element_kind[d];
     if (has_teeth(kind)) return Refusal::bristles;
@@ -53,15 +54,25 @@ inline Refusal refusal_of(const Run& ws, int d) {
 
 /// Whether fixed steps take all of a system; else `detail` tells what they do not, and why.
 inline bool takes(Run& ws) {
-  const System& sys = ws.sys;
+  const auto& sys = ws.sys;
   auto refuse = [&](int component, Refusal why) {
-    ws.detail.component = component, ws.detail.value = real(int(why));
+    ws.detail.component = component, ws.detail.value = double(int(why));
     return false;
   };
   if (with_draws && sys.draws > 0) return refuse(-1, Refusal::flows);
   for (int d = 0; d < ws.n_directions; ++d) {
     const Refusal why = refusal_of(ws, d);
     if (why != Refusal::taken) return refuse(d, why);
+  }
+  if constexpr (NumberOf<real>::single) {
+    // src/clutchwork/codegen/single.py says it by name
+    for (int c = 0; c < sys.contacts; ++c) {
+      if (is_stop(ws, c)) return refuse(int(sys.elements) + c, Refusal::single_stops);
+    }
+    if (sys.loads > 0) return refuse(int(sys.elements + sys.load_contact[0]), Refusal::single_loads);
+    for (std::int64_t k = 0; k < sys.segments; ++k) {
+      if (!is_zero(sys.segment_coef[segment_size * k + 4])) return refuse(-1, Refusal::single_waves);
+    }
   }
   return has_fixed_steps(sys) || refuse(-1, Refusal::many_speeds);
 }
@@ -94,36 +105,47 @@ inline void pack_all(Run& ws) {
   f.ready = true;
 }
 
+/// Where the matrices are made: they are used for many steps, whose errors would add up.
+inline double* wide_of(double* own, const void*) { return own; }
+inline Twofold* wide_of(const Single*, Twofold* own) { return own; }
+/// What is kept of them.
+inline void round(const double*, int, const double*) {}
+inline void round(const Twofold* from, int n, Single* to) {
+  for (int i = 0; i < n; ++i) to[i] = from[i].high;
+}
+
 /// Factor of M - h/2 sum(slope d'd), the answers to the impulses of the contacts and their mobility.
 /// docs/theory/fixed-steps.md (5)
 inline bool factor_step(Run& ws, real h) {
-  const System& sys = ws.sys;
+  const auto& sys = ws.sys;
   Fixed<real>& f = ws.fixed;
   const int nv = int(sys.speeds), ne = int(sys.elements), nc = int(sys.contacts);
-  for (int i = 0; i < nv * nv; ++i) f.factor[i] = 0;
+  wide *factor = wide_of(f.factor, f.wide_factor), *answer = wide_of(f.answer, f.wide_answer);
+  for (int i = 0; i < nv * nv; ++i) factor[i] = 0;
   for (int i = 0; i < nv; ++i) {
     const auto row = mass_row(sys, i);
-    for (int k = 0; k < row.n && row.column[k] <= i; ++k) f.factor[i * nv + row.column[k]] = row.value[k];
+    for (int k = 0; k < row.n && row.column[k] <= i; ++k) factor[i * nv + row.column[k]] = row.value[k];
   }
   for (int d = 0; d < ws.n_directions; ++d) {
     if (f.kept[d] == 0) continue;
     const auto row = rate_row(sys, d);
     for (int a = 0; a < row.n; ++a) {
       for (int b = 0; b <= a; ++b)
-        f.factor[row.column[a] * nv + row.column[b]] -= 0.5 * h * f.kept[d] * row.value[a] * row.value[b];
+        factor[row.column[a] * nv + row.column[b]] -= wide(0.5 * h * f.kept[d]) * row.value[a] * row.value[b];
     }
   }
-  if (!cholesky(nv, f.factor, nv)) return false;
+  if (!cholesky(nv, factor, nv)) return false;
   for (int c = 0; c < nc; ++c) {
-    real* x = f.answer + c * nv;
+    wide* x = answer + c * nv;
     const auto row = rate_row(sys, ne + c);
     for (int i = 0; i < nv; ++i) x[i] = 0;
     for (int k = 0; k < row.n; ++k) x[row.column[k]] = row.value[k];
-    forward_solve(nv, f.factor, nv, x), backward_solve(nv, f.factor, nv, x);
+    forward_solve(nv, factor, nv, x), backward_solve(nv, factor, nv, x);
   }
   for (int c = 0; c < nc; ++c) {
-    for (int o = 0; o < nc; ++o) f.mobility[c * nc + o] = rate_row(sys, ne + c).times(f.answer + o * nv);
+    for (int o = 0; o < nc; ++o) f.mobility[c * nc + o] = real(rate_row(sys, ne + c).times(answer + o * nv));
   }
+  round(factor, nv * nv, f.factor), round(answer, nc * nv, f.answer);
   reach_loads(ws, h);
   f.length = h;
   ++ws.statistics.jacobians;

@@ -7,6 +7,10 @@ namespace clutchwork::fixed {
 
 using Run = Workspace<real>;
 
+/// x += change. Where numbers are single, what that loses is kept: docs/theory/fixed-steps.md (14)
+inline void add(double& x, const double*, int, double change) { x += change; }
+inline void add(Single& x, Single* low, int i, Single change) { add_to(x, low[i], change); }
+
 /// y := rows x, for n rows of N numbers.
 template <int N>
 CLUTCHWORK_INLINE void multiply_few(int n, const real* row, const real* x, real* y) {
@@ -43,9 +47,24 @@ inline void rates_by(const Run& ws, const real* speeds, real* rates) {
       rates);
 }
 
+/// Slips are small differences of speeds: where these are single, they are summed in two parts, with what the sums of
+/// the speeds have not taken yet.
+inline void sum_slips(const Workspace<double>&, double*) {}
+inline void sum_slips(const Workspace<Single>& ws, Single* rates) {
+  for (int d = int(ws.sys.elements); d < ws.n_directions; ++d) {
+    const auto row = rate_row(ws.sys, d);
+    Twofold slip;
+    for (int k = 0; k < row.n; ++k) {
+      const int i = row.column[k];
+      slip += Twofold::product(row.value[k].v, ws.v[i].v) + Twofold(row.value[k] * ws.fixed.speed_low[i]);
+    }
+    rates[d] = slip.high;
+  }
+}
+
 /// Speeds of all nodes, or what they gain.
 inline void nodes_by(const Run& ws, const real* speeds, const real* given, real* nodes) {
-  const System& sys = ws.sys;
+  const auto& sys = ws.sys;
   multiply(
       int(sys.speeds), int(sys.nodes), ws.fixed.node_rows, [&](int n) { return basis_row(sys, n); }, speeds, nodes);
   for (int n = 0; sys.prescribed > 0 && n < sys.nodes; ++n) {

@@ -10,7 +10,7 @@ namespace clutchwork::fixed {
 
 /// A step, or none that has passed: where a row is.
 struct Look {
-  real t = 0;                  ///< [s] start of the step
+  double t = 0;                ///< [s] start of the step
   real h = 0;                  ///< [s] its length
   const real *change, *given;  ///< change of the speeds and of the prescribed ones over h
   const real *state, *torque;  ///< change of the states; mean torque of each direction
@@ -32,7 +32,7 @@ inline real supply_power(const Run& ws, int i, real torque, real rate, const rea
 /// meters. docs/theory/fixed-steps.md (9)
 template <class Add>
 void energies_until(const Run& ws, const Look& look, real s, Add&& add) {
-  const System& sys = ws.sys;
+  const auto& sys = ws.sys;
   const Fixed<real>& f = ws.fixed;
   const int np = int(sys.prescribed), nv = int(sys.speeds), nd = ws.n_directions;
   const real span = s * look.h;
@@ -63,18 +63,18 @@ void energies_until(const Run& ws, const Look& look, real s, Add&& add) {
   }
 }
 
-/// Angles of all nodes at the share s of a step.
-inline void angles_at(const Run& ws, const Look& look, real s, real* angle) {
+/// What all nodes turn up to the share s of a step, as f(node, angle).
+template <class F>
+void angles_until(const Run& ws, const Look& look, real s, F&& turned) {
   const Fixed<real>& f = ws.fixed;
   nodes_by(ws, ws.v, f.given, f.node_start), nodes_by(ws, look.change, look.given, f.node_gain);
-  for (int n = 0; n < ws.sys.nodes; ++n)
-    angle[n] = ws.angle[n] + s * look.h * (f.node_start[n] + 0.5 * s * f.node_gain[n]);
+  for (int n = 0; n < ws.sys.nodes; ++n) turned(n, s * look.h * (f.node_start[n] + 0.5 * s * f.node_gain[n]));
 }
 
 /// Speeds, accelerations and angles of the nodes, and the states; `length`: that of the step by which accelerations are
 /// told.
 inline void fill_motion(const Run& ws, const Look& look, real s, real length, real* row) {
-  const System& sys = ws.sys;
+  const auto& sys = ws.sys;
   const Fixed<real>& f = ws.fixed;
   const RowLayout& at = ws.row;
   // as they are behind the step, to the last bit
@@ -86,13 +86,13 @@ inline void fill_motion(const Run& ws, const Look& look, real s, real length, re
     row[at.acceleration + n] = length > 0 ? row[at.acceleration + n] / length : 0;
     row[at.angle + n] = ws.angle[n];
   }
-  if (ws.options.angles && s > 0) angles_at(ws, look, s, row + at.angle);
+  if (ws.options.angles && s > 0) angles_until(ws, look, s, [&](int n, real angle) { row[at.angle + n] += angle; });
   for (int i = 0; i < sys.states; ++i) row[at.state + i] = ws.state[i] + s * look.state[i];
 }
 
 /// Torques and energies.
 inline void fill_energies(Run& ws, const Look& look, real s, real* row) {
-  const System& sys = ws.sys;
+  const auto& sys = ws.sys;
   const RowLayout& at = ws.row;
   const int nd = ws.n_directions, ne = int(sys.elements);
   auto copy = [&](std::int64_t to, const real* from, std::int64_t n) {
@@ -114,7 +114,7 @@ inline void fill_energies(Run& ws, const Look& look, real s, real* row) {
 
 /// Flows and powers of supplies, at the inputs of the row.
 inline void fill_flows(Run& ws, const Look& look, real s, real* row) {
-  const System& sys = ws.sys;
+  const auto& sys = ws.sys;
   const Fixed<real>& f = ws.fixed;
   const RowLayout& at = ws.row;
   if (sys.flows > 0) {
@@ -138,8 +138,8 @@ inline int shown_mode(const Run& ws, const Look& look, int c, int mode, real s) 
 
 /// The numbers of one row at the share s of a step.
 inline void fill_row(Run& ws, const Look& look, real s, real length, const int* mode, real* row) {
-  const System& sys = ws.sys;
-  const real t = look.t + s * look.h;
+  const auto& sys = ws.sys;
+  const double t = look.t + double(s * look.h);
   fill_motion(ws, look, s, length, row);
   fill_energies(ws, look, s, row);
   inputs_at(ws, t);

@@ -7,7 +7,7 @@ namespace clutchwork::fixed {
 
 /// Change of the states of process i, each with its own slope, so that a fast one does not ring.
 inline void change_process(Run& ws, int i, real h) {
-  const System& sys = ws.sys;
+  const auto& sys = ws.sys;
   Fixed<real>& f = ws.fixed;
   visit_process(sys.process_kind[i], [&](auto tag) {
     using E = typename decltype(tag)::type;
@@ -29,7 +29,7 @@ inline void change_process(Run& ws, int i, real h) {
 
 /// Changes of all shared states, from the mean torques and the rates in the middle: the heat of a step is its work.
 inline void change_shared(Run& ws, real h) {
-  const System& sys = ws.sys;
+  const auto& sys = ws.sys;
   Fixed<real>& f = ws.fixed;
   real* middle = f.predicted;
   for (int d = 0; d < ws.n_directions; ++d) middle[d] = f.start_rate[d] + 0.5 * f.rate_change[d];

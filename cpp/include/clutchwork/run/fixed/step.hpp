@@ -14,12 +14,12 @@ namespace clutchwork::fixed {
 /// Speeds, states and rates that are expected in the middle of the step, from the last one; what round-off makes of a
 /// shaft at rest is no rate. docs/theory/fixed-steps.md (3)
 inline void predict(Run& ws, real h, real tolerance) {
-  const System& sys = ws.sys;
+  const auto& sys = ws.sys;
   Fixed<real>& f = ws.fixed;
   const real share = f.time == ws.time && f.before > 0 ? 0.5 * h / f.before : 0;
   for (int i = 0; i < sys.speeds; ++i) f.ahead[i] = ws.v[i] + share * f.gain[i];
   for (int i = 0; i < sys.states; ++i) f.state_ahead[i] = ws.state[i] + share * f.state_gain[i];
-  rates_by(ws, f.ahead, f.predicted), rates_by(ws, ws.v, f.start_rate);
+  rates_by(ws, f.ahead, f.predicted), rates_by(ws, ws.v, f.start_rate), sum_slips(ws, f.start_rate);
   for (int d = 0; d < ws.n_directions; ++d) {
     for (int p = 0; p < sys.prescribed; ++p) {
       f.predicted[d] += prescribed_share(ws, d, p) * ws.in.prescribed[p];
@@ -30,7 +30,7 @@ inline void predict(Run& ws, real h, real tolerance) {
 }
 
 /// Signals at time t, beyond their knots where they have passed one.
-inline void read_signals(Run& ws, real t) {
+inline void read_signals(Run& ws, double t) {
   // which contacts are pressed and which fail is seen in every step
   ws.in.next_knot > t ? inputs_at(ws, t) : load_inputs(ws, t);
 }
@@ -74,7 +74,7 @@ inline void see_faults(Run& ws) {
 }
 
 /// Prescribed speeds at the end of the step.
-inline void follow_prescribed(Run& ws, real t) {
+inline void follow_prescribed(Run& ws, double t) {
   Fixed<real>& f = ws.fixed;
   if (ws.in.next_knot < t) load_inputs(ws, t);
   for (int p = 0; p < ws.sys.prescribed; ++p)
@@ -84,7 +84,7 @@ inline void follow_prescribed(Run& ws, real t) {
 /// The change of the speeds without the impulses of contacts, and the slips at the end with it.
 /// docs/theory/fixed-steps.md (5)
 inline void move_freely(Run& ws, real h) {
-  const System& sys = ws.sys;
+  const auto& sys = ws.sys;
   Fixed<real>& f = ws.fixed;
   const int nv = int(sys.speeds), np = int(sys.prescribed), ne = int(sys.elements), nc = int(sys.contacts);
   real* x = f.change;
@@ -109,7 +109,7 @@ inline void move_freely(Run& ws, real h) {
 /// Speeds without inertia follow torques at once, of which a step knows those in its middle: they go on from the
 /// middles of two steps, and rates with them. docs/theory/fixed-steps.md, rule 5
 inline void settle_massless(Run& ws, real h) {
-  const System& sys = ws.sys;
+  const auto& sys = ws.sys;
   Fixed<real>& f = ws.fixed;
   for (int i = 0; i < sys.speeds; ++i) {
     if (sys.massless[i] == 0) continue;
@@ -125,7 +125,7 @@ inline void settle_massless(Run& ws, real h) {
 
 /// Speeds, torques and states with the impulses.
 inline void move(Run& ws, real h) {
-  const System& sys = ws.sys;
+  const auto& sys = ws.sys;
   Fixed<real>& f = ws.fixed;
   const int nv = int(sys.speeds), ne = int(sys.elements);
   for (int c = 0; c < sys.contacts; ++c) axpy(nv, f.impulse[c], f.answer + c * nv, f.change);
@@ -159,7 +159,7 @@ inline bool are_known(Run& ws) {
   for (int c = 0; c < ws.sys.contacts; ++c) {
     real seen = 0;
     if (!ws.contact.loaded[c] || table_room(ws, c, ws.fixed.end_slip[c], seen) >= 0) continue;
-    ws.detail.component = int(ws.sys.elements) + c, ws.detail.value = seen;
+    ws.detail.component = int(ws.sys.elements) + c, ws.detail.value = double(seen);
     return false;
   }
   return true;
@@ -179,10 +179,10 @@ inline bool gives_way(Run& ws, real tolerance) {
 }
 
 /// Everything of one step but its taking over, again without each freewheel that gives way. `running`: it is there.
-inline Status make_step(Run& ws, const real t, const real h, const real end) {
+inline Status make_step(Run& ws, const double t, const real h, const double end) {
   Fixed<real>& f = ws.fixed;
   const real tolerance = slip_tolerance(ws);
-  read_signals(ws, t + 0.5 * h);
+  read_signals(ws, t + 0.5 * double(h));
   predict(ws, h, tolerance);
   see_middle(ws);
   if (ws.guard.n_faulty > 0) see_faults(ws);
@@ -209,12 +209,15 @@ inline Status make_step(Run& ws, const real t, const real h, const real end) {
 
 /// The step is taken: speeds, states, angles, work and history.
 inline void take_over(Run& ws, const Look& look) {
-  const System& sys = ws.sys;
+  const auto& sys = ws.sys;
   Fixed<real>& f = ws.fixed;
-  if (ws.options.work) energies_until(ws, look, 1.0, [&](int i, real energy) { work_of(ws, i) += energy; });
-  if (ws.options.angles) angles_at(ws, look, 1.0, ws.angle);
-  for (int i = 0; i < sys.speeds; ++i) ws.v[i] += f.change[i], f.gain[i] = f.change[i];
-  for (int i = 0; i < sys.states; ++i) ws.state[i] += f.state_change[i], f.state_gain[i] = f.state_change[i];
+  if (ws.options.work)
+    energies_until(ws, look, 1.0, [&](int i, real energy) { add(work_of(ws, i), f.energy_low, i, energy); });
+  if (ws.options.angles)
+    angles_until(ws, look, 1.0, [&](int n, real angle) { add(ws.angle[n], f.angle_low, n, angle); });
+  for (int i = 0; i < sys.speeds; ++i) add(ws.v[i], f.speed_low, i, f.change[i]), f.gain[i] = f.change[i];
+  for (int i = 0; i < sys.states; ++i)
+    add(ws.state[i], f.state_low, i, f.state_change[i]), f.state_gain[i] = f.state_change[i];
   for (int p = 0; p < sys.prescribed; ++p) f.given[p] += f.given_change[p], f.given_gain[p] = f.given_change[p];
   f.before = look.h;
   ++ws.statistics.steps;
@@ -228,7 +231,7 @@ inline Cause cause_of(const Run& ws, int c, int from) {
 }
 
 /// Report the contacts that have changed, in the order of their instants, and give them their modes.
-inline void report(Run& ws, const Look& look, real end) {
+inline void report(Run& ws, const Look& look, double end) {
   Fixed<real>& f = ws.fixed;
   const int ne = int(ws.sys.elements), nc = int(ws.sys.contacts);
   int n = 0;
@@ -236,7 +239,7 @@ inline void report(Run& ws, const Look& look, real end) {
     if (f.mode[c] == ws.contact.mode[c]) continue;
     const bool was_locked = ws.contact.mode[c] == locked;
     const real s = was_locked ? larger(0.0, f.box[c] == slips_on ? f.share[c] : 0) : share_at_zero(ws, c, look.h);
-    f.instant[c] = smaller(look.t + s * look.h, end);
+    f.instant[c] = smaller(look.t + double(s * look.h), end);
     int at = n++;
     for (; at > 0 && f.instant[f.list[at - 1]] > f.instant[c]; --at) f.list[at] = f.list[at - 1];
     f.list[at] = c;
@@ -252,7 +255,8 @@ inline void report(Run& ws, const Look& look, real end) {
     if (from == open && to != locked) continue;
     ws.time = f.instant[c];
     const real acceleration = f.rate_change[ne + c] / look.h;
-    record(ws, {c, from, to, cause_of(ws, c, from), acceleration, f.torque[ne + c], f.mean[ne + c], energy, energy});
+    record(ws, {c, from, to, cause_of(ws, c, from), double(acceleration), double(f.torque[ne + c]),
+                double(f.mean[ne + c]), double(energy), double(energy)});
   }
 }
 

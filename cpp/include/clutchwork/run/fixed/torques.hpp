@@ -78,7 +78,7 @@ inline void see_branch(Run& ws, Branch<real>& b, real h) {
   const real rate = f.predicted[d];
   if (f.bends[d] == settling) settle_piece(ws, b, &rate);
   const Partial<real> p =
-      branch_partial(ws, b, rate, 0.0, f.state_ahead, ws.observed.state_rates, state_partials(ws, d));
+      branch_partial(ws, b, rate, real(0), f.state_ahead, ws.observed.state_rates, state_partials(ws, d));
   real torque = p.torque, slope = p.by_rate;
   if (b.states > 0) {
     // mostly it is one, for which no loop is left
@@ -100,7 +100,7 @@ inline bool is_kept(const Run& ws, const Branch<real>& b, real h) {
   const Fixed<real>& f = ws.fixed;
   const int d = b.direction;
   const real off = abs(f.slope[d] - f.kept[d]);
-  if (b.states > 0 && b.ways == 1) return off <= 1e-14 * abs(f.slope[d]);
+  if (b.states > 0 && b.ways == 1) return off <= roundoff<real>(1e-14, 5e-6) * abs(f.slope[d]);
   // a speed without inertia goes where its slopes are
   if (f.massless[d] != 0) return off <= 1e-3 * abs(f.slope[d]);
   return 0.5 * h * off * ws.geometry.own[d] <= 0.02;
