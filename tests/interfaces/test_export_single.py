@@ -70,6 +70,36 @@ int main(int n, char **word) {
 """
 
 
+# the largest error of each elementary function, in units of the last place of a single
+ELEMENTARY = r"""
+#include <clutchwork/components/single.hpp>
+#include <cstdio>
+using namespace clutchwork;
+template <class F, class G>
+void check(const char *name, double low, double high, F f, G g, double least = 0) {
+  double worst = 0;
+  for (int i = 0; i <= 20000; ++i) {
+    const float x = float(low + (high - low) * i / 20000);
+    const double wanted = g(double(x)), size = std::fabs(wanted) > least ? std::fabs(wanted) : least;
+    const double off = std::fabs(double(f(Single(x)).v) - wanted) / size * 0x1p23;
+    if (!(off <= worst)) worst = off;
+  }
+  std::printf("%s %g\n", name, worst);
+}
+#define CHECK(NAME, ...) check(#NAME, __VA_ARGS__)
+#define OF(NAME) [](Single x) { return NAME(x); }, [](double x) { return std::NAME(x); }
+int main() {
+  CHECK(exp, -87, 88, OF(exp)), CHECK(log, 1e-6, 8, OF(log)), CHECK(log, 0.9, 1.1, OF(log));
+  CHECK(sin, -100, 100, OF(sin), 1e-3), CHECK(cos, -100, 100, OF(cos), 1e-3);
+  CHECK(tanh, -12, 12, OF(tanh)), CHECK(atan, -20, 20, OF(atan)), CHECK(cbrt, 1e-6, 100, OF(cbrt));
+  const double powers[] = {-3.0, -0.5, 0.7, 2.5, 9.0};
+  for (const double y : powers)
+    CHECK(pow, 1e-3, 50, [&](Single x) { return pow(x, Single(y)); },
+          [&](double x) { return std::pow(x, double(float(y))); });
+}
+"""
+
+
 def later(start: float) -> cw.Driveline:
     """The shift, as late as asked."""
     pressures = {
@@ -115,10 +145,10 @@ def table(folder: Path, step: float, rows: int, *, start: float = 0.0, how: str 
 @pytest.mark.parametrize("step", [1e-3, 1e-4])
 def test_the_shift_is_as_exact_as_in_double(built: Path, step: float) -> None:
     """Within a fifth; with sums that keep nothing the errors are several times as large, most at small steps."""
-    system, times = later(0.0).assemble(), np.linspace(0.0, END, 801)
+    system, times = later(0.0).assemble(), np.linspace(0.0, END, 2001)
     exact = cw.simulate(system, END, times=times, rtol=1e-11, atol=1e-11)
     double = cw.simulate(system, END, times=times, method="fixed", step=step)
-    single = table(built, step, 800)
+    single = table(built, step, 2000)
 
     def error(found: Any) -> float:
         return float(max(np.abs(found(k) - exact[f"{name}.speed"]).max() for k, name in enumerate(SPEEDS)))
@@ -146,6 +176,39 @@ def test_a_day_later_it_is_the_same(built: Path, tmp_path: Path) -> None:
     np.testing.assert_array_equal(second[0], start + first[0])
     # round-off of the instants in double
     np.testing.assert_allclose(second[1:5], first[1:5], rtol=0.0, atol=2e-4)
+
+
+def test_contacts_that_depend_on_each_other_share_as_in_double(built: Path, tmp_path: Path) -> None:
+    """Five clutches between the same shafts, up to where they let go together."""
+    d = cw.Driveline("five")
+    a, b = d.shaft("a", inertia=0.3, speed=20.0), d.shaft("b", inertia=2.0, speed=20.0)
+    names = [f"c{i}" for i in range(5)]
+    for i, name in enumerate(names):
+        pressure = cw.Table([(0.0, 2e5), (3.0, 6e4 / (1 + i))])
+        law = cw.Exponential(**six_speed.LAW)
+        d.add(cw.Clutch(name, base=a, follower=b, friction=law, gain=2e-3 * 3.0**-i, pressure=pressure))
+    d.add(cw.SpeedTorque("engine", shaft=a, torque=[(0.0, 60.0), (500.0, 50.0)]))
+    d.add(cw.ResistingTorque("load", shaft=b, torque=55.0, speed=0.5))
+    shown = ["a.speed", "b.speed", *(f"{name}.torque" for name in names)]
+    steps: dict[str, Any] = {"method": "fixed", "step": 1e-3}
+    folder = cw.export_c(d, tmp_path, t_end=END, dt=2e-3, signals=shown, precision="single", **steps)
+    program(folder, built)
+    columns, run = table(folder, 1e-3, 400), d.simulate(END, times=np.linspace(0.0, END, 401), **steps)
+    assert {event.before for event in run.events} == {"locked"}
+    for name, column in zip(shown, columns[1:], strict=True):
+        # a torque that holds has the round-off of a slip over the length of a step
+        np.testing.assert_allclose(column, run[name], rtol=0.0, atol=1e-4 * np.abs(run[name]).max(), err_msg=name)
+
+
+def test_elementary_functions(built: Path) -> None:
+    """Within two units of the last place."""
+    (built / "elementary.cpp").write_text(ELEMENTARY)
+    flags = ["-std=c++20", "-O1", "-ffp-contract=off", "-I.", "-Icore/include"]
+    subprocess.run(["c++", *flags, "elementary.cpp", "-o", "elementary"], cwd=built, check=True)
+    told = subprocess.run([built / "elementary"], capture_output=True, text=True, check=True).stdout
+    worst = [(float(line.split()[1]), line.split()[0]) for line in told.splitlines()]
+    assert len(worst) == 13
+    assert max(worst)[0] < 2.0, worst
 
 
 def test_saved_states_and_calls_change_no_bit(built: Path) -> None:

@@ -87,7 +87,7 @@ def system() -> Iterator[str]:
     yield "/// Up to so many, steps of one length are taken."
     yield f"inline constexpr int most_fixed_speeds = {MOST_FIXED_SPEEDS};"
     yield "/// Frozen model: sizes and arrays inside bytes that the caller keeps."
-    yield "/// Its numbers are doubles, or carry tangents, or are single; instants stay what they are, or carry tangents."
+    yield "/// Its numbers are doubles, or carry tangents, or are single; instants are never single."
     yield "struct SystemCounts {"
     for name, doc in COUNTS:
         yield f"  std::int64_t {member(name)};  ///< {doc}"

@@ -124,7 +124,7 @@ struct Twofold {
   }
 };
 
-/// exp within one unit of the last place.
+/// Elementary functions within two units of the last place.
 inline Single exp(Single a) {
   const float x = a.v;
   if (!(x < 88.8f)) return x != x ? a : Single(std::numeric_limits<float>::infinity());
@@ -207,8 +207,9 @@ inline Single cos(Single x) { return sine_ahead(x.v, 1); }
 inline Single tanh(Single a) {
   const float x = a.v, size = __builtin_fabsf(x);
   if (size < 0.625f) {
+    // continued fraction of Lambert to its ninth
     const float z = x * x;
-    return x - x * z * (105.0f + z * 10.0f) / (315.0f + z * (45.0f * 3.0f + z * 3.0f));
+    return x - x * z * (315.0f + z * 14.0f) / (945.0f + z * (420.0f + z * 15.0f));
   }
   const float y = size > 9.0f ? 1.0f : 1.0f - 2.0f / (exp(Single(2.0f * size)).v + 1.0f);
   return x < 0 ? -y : x != x ? x : y;

@@ -50,9 +50,11 @@ struct Fixed {
   T* factor = nullptr;        ///< Cholesky factor of the matrix of a step, by rows
   T* answer = nullptr;        ///< change of the speeds by a unit impulse of each contact
   T* mobility = nullptr;      ///< of the contacts, by rows: change of slips by unit impulses
-  Twofold *wide_factor = nullptr, *wide_answer = nullptr;  ///< where they are made of single numbers
-  T* rate_rows = nullptr;                                  ///< of few speeds: rates of directions by them
-  T* node_rows = nullptr;                                  ///< and speeds of nodes
+  // where they are made of single numbers, and impulses are looked for
+  Twofold *wide_factor = nullptr, *wide_answer = nullptr, *wide_mobility = nullptr, *wide_impulse = nullptr;
+  Twofold *wide_slip = nullptr, *wide_solved = nullptr, *wide_free = nullptr;
+  T* rate_rows = nullptr;  ///< of few speeds: rates of directions by them
+  T* node_rows = nullptr;  ///< and speeds of nodes
 
   // scratch of a step
   T *ahead = nullptr, *state_ahead = nullptr, *given_ahead = nullptr;  ///< speeds and states predicted for its middle
@@ -93,6 +95,8 @@ struct Fixed {
       a.take(p.energy_low, has ? n.directions + n.prescribed + n.supplies + n.meters : 0);
       if constexpr (NumberOf<T>::single) {
         a.scratch(p.row, n.row), a.scratch(p.wide_factor, nv * nv), a.scratch(p.wide_answer, nc * nv);
+        a.scratch(p.wide_mobility, nc * nc), a.scratch(p.wide_impulse, nc), a.scratch(p.wide_slip, nc);
+        a.scratch(p.wide_solved, nc), a.scratch(p.wide_free, nc * nc);
       }
     }
     a.take(p.bends, nd), a.take(p.massless, nd), a.take(p.two_sided, nc);

@@ -8,11 +8,11 @@ namespace clutchwork::fixed {
 /// Minimise 1/2 x'(W + E)x + g'x over lower <= x <= upper; E is the diagonal `weight`. Views into memory of the caller.
 struct Boxes {
   int n;
-  const real* mobility;  ///< W, n x n
+  const wide* mobility;  ///< W, n x n
   const real *gradient, *lower, *upper, *weight;
-  real *x, *slope;  ///< solution, and W x + g: the slips at the end of the step
+  wide *x, *slope;  ///< solution, and W x + g: the slips at the end of the step
   int* side;        ///< 0 free, -1 at lower, 1 at upper: a guess, then the solution
-  real *solved, *factor;
+  wide *solved, *factor;
   int* list;
 };
 
@@ -20,9 +20,9 @@ struct Boxes {
 inline constexpr int most_sets = 45;
 
 /// W x + g of contact i.
-inline real slope_of(const Boxes& p, int i) {
-  real s = p.gradient[i];
-  const real* row = p.mobility + i * p.n;
+inline wide slope_of(const Boxes& p, int i) {
+  wide s = p.gradient[i];
+  const wide* row = p.mobility + i * p.n;
   for (int j = 0; j < p.n; ++j) s += row[j] * p.x[j];
   return s;
 }
@@ -30,13 +30,13 @@ inline real slope_of(const Boxes& p, int i) {
 /// Factor of W + E of the m free contacts of the list, by rows of the length m. False: it is not positive definite.
 inline bool factor_free(const Boxes& p, int m) {
   for (int a = 0; a < m; ++a) {
-    const real* own = p.mobility + p.list[a] * p.n;
-    real* row = p.factor + a * m;
+    const wide* own = p.mobility + p.list[a] * p.n;
+    wide* row = p.factor + a * m;
     for (int b = 0; b <= a; ++b) {
-      const real* other = p.factor + b * m;
-      real s = own[p.list[b]] + (a == b ? p.weight[p.list[a]] : 0.0);
+      const wide* other = p.factor + b * m;
+      wide s = own[p.list[b]] + wide(a == b ? p.weight[p.list[a]] : real(0));
       for (int k = 0; k < b; ++k) s -= row[k] * other[k];
-      if (a == b && !(s > 0)) return false;
+      if (a == b && !(value(s) > 0)) return false;
       row[b] = a == b ? sqrt(s) : s / other[b];
     }
   }
@@ -45,14 +45,14 @@ inline bool factor_free(const Boxes& p, int m) {
 
 /// solved := -(W + E)^-1 solved of the free contacts.
 inline void solve_free(const Boxes& p, int m) {
-  real* y = p.solved;
+  wide* y = p.solved;
   for (int a = 0; a < m; ++a) {
-    real s = -y[a];
+    wide s = -y[a];
     for (int k = 0; k < a; ++k) s -= p.factor[a * m + k] * y[k];
     y[a] = s / p.factor[a * m + a];
   }
   for (int a = m - 1; a >= 0; --a) {
-    real s = y[a];
+    wide s = y[a];
     for (int k = a + 1; k < m; ++k) s -= p.factor[k * m + a] * y[k];
     y[a] = s / p.factor[a * m + a];
   }
@@ -63,7 +63,7 @@ inline int solve_set(const Boxes& p) {
   int m = 0;
   for (int i = 0; i < p.n; ++i) {
     if (p.side[i] == 0) p.list[m++] = i;
-    p.x[i] = p.side[i] == 0 ? 0.0 : p.side[i] > 0 ? p.upper[i] : p.lower[i];
+    p.x[i] = p.side[i] == 0 ? real(0) : p.side[i] > 0 ? p.upper[i] : p.lower[i];
   }
   if (!factor_free(p, m)) return -1;
   for (int a = 0; a < m; ++a) p.solved[a] = slope_of(p, p.list[a]);
@@ -74,13 +74,14 @@ inline int solve_set(const Boxes& p) {
 
 /// Where contact i should be, seen from the present set; its present side where that is right.
 inline int wanted_side(const Boxes& p, int i) {
-  if (p.side[i] == 0) return p.x[i] < p.lower[i] ? -1 : p.x[i] > p.upper[i] ? 1 : 0;
+  if (p.side[i] == 0) return real(p.x[i]) < p.lower[i] ? -1 : real(p.x[i]) > p.upper[i] ? 1 : 0;
   if (!(p.lower[i] < p.upper[i])) return p.side[i];
-  const real* row = p.mobility + i * p.n;
-  real s = p.gradient[i] + p.weight[i] * p.x[i], size = abs(p.gradient[i]);
-  for (int j = 0; j < p.n; ++j) s += row[j] * p.x[j], size += abs(row[j] * p.x[j]);
+  const wide* row = p.mobility + i * p.n;
+  wide s = wide(p.gradient[i]) + p.weight[i] * p.x[i];
+  real size = abs(p.gradient[i]);
+  for (int j = 0; j < p.n; ++j) s += row[j] * p.x[j], size += abs(real(row[j] * p.x[j]));
   // what round-off makes of a slip decides nothing
-  return s * p.side[i] > roundoff<real>(1e-14, 5e-6) * size ? 0 : p.side[i];
+  return real(s) * p.side[i] > roundoff<real>(1e-14, 1e-12) * size ? 0 : p.side[i];
 }
 
 /// Take the weight out again: one step with the exact matrix, within the bounds.
@@ -89,7 +90,8 @@ inline void refine_once(const Boxes& p, int m) {
   solve_free(p, m);
   for (int a = 0; a < m; ++a) {
     const int i = p.list[a];
-    p.x[i] = smaller(larger(p.x[i] + p.solved[a], p.lower[i]), p.upper[i]);
+    const wide x = p.x[i] + p.solved[a];
+    p.x[i] = real(x) < p.lower[i] ? wide(p.lower[i]) : real(x) > p.upper[i] ? wide(p.upper[i]) : x;
   }
 }
 

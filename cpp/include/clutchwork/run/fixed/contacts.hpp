@@ -116,17 +116,27 @@ inline bool find_impulses(Run& ws, real h, real tolerance) {
   }
   for (int c = 0; c < nc; ++c) {
     const real own = larger(-f.lower[c], f.upper[c]), ratio = own > 0 && own < infinity ? largest / own : 1;
-    // as small as round-off allows: it moves the bounds that contacts see
-    f.weight[c] = roundoff<real>(1e-10, 1e-6) * f.mobility[c * nc + c] * smaller(ratio, roundoff<real>(1e6, 1e2));
+    f.weight[c] = 1e-10 * f.mobility[c * nc + c] * smaller(ratio, real(1e6));
   }
-  const Boxes boxes{nc,        f.mobility, f.gradient, f.lower,  f.upper,       f.weight,
-                    f.impulse, f.end_slip, f.side,     f.solved, f.free_factor, f.list};
+  const Boxes boxes{nc,
+                    wide_of(f.mobility, f.wide_mobility),
+                    f.gradient,
+                    f.lower,
+                    f.upper,
+                    f.weight,
+                    wide_of(f.impulse, f.wide_impulse),
+                    wide_of(f.end_slip, f.wide_slip),
+                    f.side,
+                    wide_of(f.solved, f.wide_solved),
+                    wide_of(f.free_factor, f.wide_free),
+                    f.list};
   for (int round = 0; round < rounds; ++round) {
     for (int c = 0; c < nc; ++c) {
       if (!(f.lower[c] < f.upper[c])) f.side[c] = 1;
     }
     const int tried = solve(boxes);
     if (tried < 0) return false;
+    keep_rounded(boxes.x, nc, f.impulse), keep_rounded(boxes.slope, nc, f.end_slip);
     ws.statistics.evaluations += tried;
     const bool changed = change_boxes(ws, h);
     if (!(ws.sys.loads > 0 && follow_loads(ws, boxes, h, tolerance)) && !changed) return true;

@@ -98,7 +98,7 @@ inline int bound_side(const Run& ws, int c, real tolerance) {
 inline real answered(const Run& ws, const Boxes& p, int l, int from, int m) {
   const real* reach = ws.fixed.load_reach + l * p.n;
   real sum = reach[from];
-  for (int a = 0; a < m; ++a) sum += reach[p.list[a]] * p.solved[a];
+  for (int a = 0; a < m; ++a) sum += reach[p.list[a]] * real(p.solved[a]);
   return sum;
 }
 

@@ -109,8 +109,8 @@ inline void pack_all(Run& ws) {
 inline double* wide_of(double* own, const void*) { return own; }
 inline Twofold* wide_of(const Single*, Twofold* own) { return own; }
 /// What is kept of them.
-inline void round(const double*, int, const double*) {}
-inline void round(const Twofold* from, int n, Single* to) {
+inline void keep_rounded(const double*, int, const double*) {}
+inline void keep_rounded(const Twofold* from, int n, Single* to) {
   for (int i = 0; i < n; ++i) to[i] = from[i].high;
 }
 
@@ -121,6 +121,7 @@ inline bool factor_step(Run& ws, real h) {
   Fixed<real>& f = ws.fixed;
   const int nv = int(sys.speeds), ne = int(sys.elements), nc = int(sys.contacts);
   wide *factor = wide_of(f.factor, f.wide_factor), *answer = wide_of(f.answer, f.wide_answer);
+  wide* mobility = wide_of(f.mobility, f.wide_mobility);
   for (int i = 0; i < nv * nv; ++i) factor[i] = 0;
   for (int i = 0; i < nv; ++i) {
     const auto row = mass_row(sys, i);
@@ -143,9 +144,10 @@ inline bool factor_step(Run& ws, real h) {
     forward_solve(nv, factor, nv, x), backward_solve(nv, factor, nv, x);
   }
   for (int c = 0; c < nc; ++c) {
-    for (int o = 0; o < nc; ++o) f.mobility[c * nc + o] = real(rate_row(sys, ne + c).times(answer + o * nv));
+    for (int o = 0; o < nc; ++o) mobility[c * nc + o] = rate_row(sys, ne + c).times(answer + o * nv);
   }
-  round(factor, nv * nv, f.factor), round(answer, nc * nv, f.answer);
+  keep_rounded(factor, nv * nv, f.factor), keep_rounded(answer, nc * nv, f.answer);
+  keep_rounded(mobility, nc * nc, f.mobility);
   reach_loads(ws, h);
   f.length = h;
   ++ws.statistics.jacobians;
