@@ -244,8 +244,9 @@ inline int mode_behind(const Run& ws, int c, real tolerance) {
     if (abs(slip) > tolerance) return slip > 0 ? forward : backward;
     return ws.contact.loaded[c] ? locked : mode == locked ? open : mode;
   }
-  // at rest, what a load of round-off holds is no slip
-  if (f.side[c] == 0 || (ws.sys.loads > 0 && abs(slip) <= tolerance)) return locked;
+  // at rest, what a load of round-off holds is no slip, nor are a few units of a single
+  const bool rough = NumberOf<real>::single || ws.sys.loads > 0;
+  if (f.side[c] == 0 || (rough && abs(slip) <= tolerance)) return locked;
   return f.lower[c] < f.upper[c] ? -f.side[c] : slip > 0 ? forward : backward;
 }
 
