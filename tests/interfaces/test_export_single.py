@@ -22,10 +22,10 @@ END = 4.0
 PLAIN, STEPS = "-O0 -DCLUTCHWORK_HOT=inline", "-O1 -DCLUTCHWORK_HOT=inline"
 # what may compute with doubles: instants, the step on the grid in front of it, rows and events
 IN_DOUBLE = re.compile(
-    r"\b(advance_steps|take_step|finish_step|make_step|emit|emit_inside|emit_end|show_present|fill_row|report|record|"
-    r"fail|signal_value|since_start|seek|load_inputs|inputs_at|signal_range|load_may_turn|place_process_inputs|early|"
-    r"take_down|take_up|take_whole|take_signals|carry|split|decide_start|place|lay_numbers|single_size|pack|"
-    r"refresh_loads|is_finite)\b"
+    r"\b(advance_steps|take_step|finish_step|make_step|emit|emit_inside|emit_end|show_present|fill_row|report|"
+    r"report_changes|record|fail|signal_value|since_start|seek|load_inputs|inputs_at|signal_range|load_may_turn|"
+    r"place_process_inputs|early|take_down|take_up|take_whole|take_signals|carry|split|decide_start|place|lay_numbers|"
+    r"single_size|pack|refresh_loads|is_finite)\b"
 )
 ARITHMETIC = re.compile(r"v?(add|sub|mul|div|sqrt|min|max|round|cvt\w*)(sd|pd)\w*|v?cvt\w+2(sd|pd)")
 
