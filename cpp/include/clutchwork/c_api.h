@@ -22,7 +22,7 @@ int64_t cw_schema_hash(void);
 /* Bytes of memory that a run of this system needs; -1 when the bytes do not fit this core. */
 int64_t cw_size(const void* system, int64_t bytes);
 
-/* The same of a core whose steps of one length have single precision, as this one of double precision tells it; where
+/* The same of a core whose steps of one length have single precision, as this one of double precision reports it; where
    that is this core already, no less than cw_size. */
 int64_t cw_single_size(const void* system, int64_t bytes);
 
