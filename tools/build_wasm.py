@@ -28,7 +28,7 @@ HOT = {"phases_small", "phases_sparse"}
 # what a page has no use for: groups of runs, linearisation, what FMUs ask for
 LEFT_OUT = re.compile(
     r"cw_(advance_group|group_size|read|local|local_size|advance_to_event|next_knot|copy|paste"
-    r"|states|rates|margins|decide|place|place_size|place_input)"
+    r"|states|rates|margins|decide|place|place_size|place_input|single_size)"
 )
 FLAGS = [
     "-std=c++20",

@@ -1,4 +1,5 @@
 #include <clutchwork/c_api.h>
+#include <clutchwork/run/fixed/single.hpp>
 #include <clutchwork/run/placed.hpp>
 
 #include <algorithm>
@@ -24,6 +25,18 @@ namespace {
 
 constexpr std::int64_t head = (std::int64_t(sizeof(cw_run)) + 63) / 64 * 64;
 
+/// Lay out the arrays of a run, and what is behind them; returns the size needed.
+std::int64_t lay(Workspace<double>& ws, unsigned char* arrays) {
+  const std::int64_t size = carve(ws, arrays);
+#ifdef CLUTCHWORK_SINGLE
+  const std::int64_t behind = (size + 63) / 64 * 64;
+  ws.fixed.image = arrays == nullptr ? nullptr : arrays + behind;
+  return behind + fixed::single_size(ws.sys);
+#else
+  return size;
+#endif
+}
+
 /// A run at time zero in its own memory, whatever was there before.
 void reset(cw_run* run) {
   Workspace<double>& ws = run->ws;
@@ -32,7 +45,7 @@ void reset(cw_run* run) {
   ws = Workspace<double>{};
   bind(ws.sys, run->system, run->system_bytes);
   ws.row = RowLayout(ws.sys);
-  carve(ws, run->arrays);
+  lay(ws, run->arrays);
   for (std::int64_t i = 0; i < ws.sys.n_input_refs; ++i) ws.in.ref_signal[i] = ws.sys.input_refs[i];
   for (std::int64_t p = 0; p < ws.sys.prescribed; ++p)
     ws.in.ref_signal[ws.sys.n_input_refs + p] = ws.sys.prescribed_input[p];
@@ -131,7 +144,15 @@ std::int64_t cw_size(const void* system, std::int64_t bytes) {
   Workspace<double> ws;
   if (system == nullptr || bind(ws.sys, static_cast<const unsigned char*>(system), bytes) < 0 || !in_range(ws.sys))
     return -1;
-  return head + carve(ws, static_cast<unsigned char*>(nullptr));
+  return head + lay(ws, nullptr);
+}
+
+std::int64_t cw_single_size(const void* system, std::int64_t bytes) {
+  const std::int64_t size = cw_size(system, bytes);
+  if (size < 0) return -1;
+  System sys;
+  bind(sys, static_cast<const unsigned char*>(system), bytes);
+  return size + fixed::extra_size(sys);
 }
 
 cw_run* cw_load(const void* system, std::int64_t bytes, void* memory, std::int64_t memory_bytes) {
@@ -489,7 +510,10 @@ int cw_paste(cw_run* run, const void* copy, std::int64_t bytes) {
   // where everything is in the memory of this run
   bind(run->ws.sys, run->system, run->system_bytes);
   std::memcpy(run->arrays, from + head, std::size_t(bytes - head));
-  carve(run->ws, run->arrays);
+  lay(run->ws, run->arrays);
+#ifdef CLUTCHWORK_SINGLE
+  run->ws.fixed.ready = false;
+#endif
   if (other.arrays != run->arrays || other.system != run->system) move_pointers(run, other);
   return 1;
 }

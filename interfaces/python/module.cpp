@@ -190,6 +190,7 @@ class Run {
   double time() const { return cw_time(run_); }
   std::int64_t row_size() const { return cw_row_size(run_); }
   std::int64_t memory_size() const { return size_; }
+  std::int64_t single_size() const { return cw_single_size(system_.c_str(), std::int64_t(system_.size())); }
 
  private:
   struct alignas(64) Block {
@@ -386,5 +387,6 @@ NB_MODULE(_core, m) {
       .def_prop_ro("pending", &Run::pending)
       .def_prop_ro("time", &Run::time)
       .def_prop_ro("row_size", &Run::row_size)
-      .def_prop_ro("memory_size", &Run::memory_size);
+      .def_prop_ro("memory_size", &Run::memory_size)
+      .def_prop_ro("single_size", &Run::single_size);
 }

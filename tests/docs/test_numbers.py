@@ -29,12 +29,12 @@ CONTACTS = {
     "A price below $10^{-9}$ of the largest": "> 1e-9 * most",
     "more than $10^{-10}$ of the kinetic energy": "constexpr double least = 1e-10;",
     "in at most 60 steps": "round < 60 && miss",
-    r"|\sigma_c| \le 10^{-10} \left( 1 + \max |v| \right)": "return 1e-10 * (1 + largest)",
+    r"|\sigma_c| \le 10^{-10} \left( 1 + \max |v| \right)": "return roundoff<T>(1e-10, 4e-6) * (1 + largest)",
 }
 EVENTS = {
     "that starts within $10^{-9}$ of its end": "fresh = 1e-9",
     r"Coefficients above $-10^{-9} \max_j |\beta_j|$": "larger(1e-9 * scale, noise)",
-    r"$10^{-10} (1 + \max |v|)$ beyond zero": "return 1e-10 * (1 + largest)",
+    r"$10^{-10} (1 + \max |v|)$ beyond zero": "return roundoff<T>(1e-10, 4e-6) * (1 + largest)",
     r"most $1.5/\omega$ long": "resolves_work(ws) ? 0.5 : 1.5) / fastest",
     r"and $0.5/\omega$ where the work is integrated": "resolves_work(ws) ? 0.5 : 1.5) / fastest",
     "after 25 time constants a decay has ended": "* s > 25 ?",

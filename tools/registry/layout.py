@@ -26,6 +26,8 @@ from registry.options import options
 FILE = "layout.gen.hpp"
 TYPES = {"f8": "double", "i4": "std::int32_t"}
 NUMBERS = {"f8": "G", "i4": "std::int32_t"}
+# numbers that are instants, or spans between them
+INSTANTS = {"input_period", "segment_time"}
 
 
 def lines() -> Iterator[str]:
@@ -85,15 +87,17 @@ def system() -> Iterator[str]:
     yield "/// Up to so many, steps of one length are taken."
     yield f"inline constexpr int most_fixed_speeds = {MOST_FIXED_SPEEDS};"
     yield "/// Frozen model: sizes and arrays inside bytes that the caller keeps."
-    yield "/// Its numbers are doubles, or carry tangents."
+    yield "/// Its numbers are doubles, or carry tangents, or are single; instants are never single."
     yield "struct SystemCounts {"
     for name, doc in COUNTS:
         yield f"  std::int64_t {member(name)};  ///< {doc}"
     yield "};"
+    yield "template <class G> struct InstantOf { using type = G; };"
+    yield "template <class G> using Instant = typename InstantOf<G>::type;"
     yield "template <class G> struct SystemOf : SystemCounts {"
     for name, kind, shape, doc in FIELDS:
-        kinds = TYPES if name == "points" else NUMBERS
-        yield f"  const {kinds[kind]}* {name};  ///< {shape} {doc}".replace("'", "")
+        number = "double" if name == "points" else "Instant<G>" if name in INSTANTS else NUMBERS[kind]
+        yield f"  const {number}* {name};  ///< {shape} {doc}".replace("'", "")
     yield "};"
     yield "using System = SystemOf<double>;"
     yield "/// Calls f(field of one System, field of the other, number of its entries) for all fields, in order."

@@ -22,6 +22,10 @@ int64_t cw_schema_hash(void);
 /* Bytes of memory that a run of this system needs; -1 when the bytes do not fit this core. */
 int64_t cw_size(const void* system, int64_t bytes);
 
+/* The same of a core whose steps of one length have single precision, as this one of double precision reports it; where
+   that is this core already, no less than cw_size. */
+int64_t cw_single_size(const void* system, int64_t bytes);
+
 /* Start a run, at time zero or at its setting t_start, in `memory` (aligned to 16 bytes); NULL when system or memory do
  * not fit. */
 cw_run* cw_load(const void* system, int64_t bytes, void* memory, int64_t memory_bytes);

@@ -71,7 +71,7 @@ struct Workspace {
 /// The points of the curves that components read.
 template <class T>
 CLUTCHWORK_HOT const Point<T>* points_of(const Workspace<T>& ws) {
-  if constexpr (has_tangents<T>)
+  if constexpr (has_tangents<T> || NumberOf<T>::single)
     return ws.moved.points;
   else
     return ws.sys.points;
@@ -92,6 +92,21 @@ void lay_out(W& ws, A& a) {
   each(ws.in, ws.contact, ws.loads, ws.fixed, ws.observed, ws.jacobian, ws.geometry, ws.event_context, ws.held,
        ws.coupled, ws.set, ws.problem, ws.decision, ws.reduced, ws.rows, ws.shared, ws.stages, ws.full, ws.ratios,
        ws.step_start, ws.step_end, ws.guard, ws.out, ws.events, ws.moved);
+}
+
+/// The same of a run of single precision, which takes steps of one length and does nothing else.
+template <class W, class A>
+  requires requires(W& ws) { ws.moved.outer; }
+void lay_out(W& ws, A& a) {
+  const Sizes n(ws.sys);
+  a.take(ws.params, ws.sys.n_params);
+  a.take(ws.v, n.speeds), a.take(ws.state, n.states), a.take(ws.angle, n.nodes), a.take(ws.work, n.directions);
+  a.take(ws.prescribed_work, n.prescribed), a.take(ws.supplied, n.supplies), a.take(ws.metered, n.meters);
+  a.take(ws.piece, n.directions), a.take(ws.heading, n.directions);
+  a.take(ws.branch, n.directions), a.take(ws.branch_of, n.directions), a.take(ws.geometry.own, n.directions);
+  a.take(ws.reduced.span, n.states);
+  auto each = [&](auto&... part) { (std::remove_reference_t<decltype(part)>::lay_out(part, a, n), ...); };
+  each(ws.in, ws.contact, ws.event_context, ws.loads, ws.jacobian, ws.shared, ws.fixed, ws.guard, ws.observed);
 }
 
 /// Lay the arrays of a workspace into memory; returns the size needed.

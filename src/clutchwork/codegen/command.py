@@ -9,6 +9,7 @@ from pathlib import Path
 from typing import Any
 
 from clutchwork.base import shell
+from clutchwork.codegen.single import PRECISIONS
 from clutchwork.declare.options import OPTIONS
 from clutchwork.declare.wording import words_of_files
 from clutchwork.run.flags import DEFAULTS, add_options, given_options
@@ -40,6 +41,12 @@ def add_command(subparsers: Any) -> None:
     export.add_argument(
         "--whole-core", action="store_true", help="all kinds of elements and laws, for other models too"
     )
+    export.add_argument(
+        "--precision",
+        choices=PRECISIONS,
+        default="double",
+        help="of steps of one length: single for some processors",
+    )
     shell.add_json(export)
     add_options(export, OF_EXPORT, {**DEFAULTS, "dt": "a thousandth of the end time"})
 
@@ -55,8 +62,8 @@ def export_command(asked: argparse.Namespace) -> int:
     signals = None if names is None else [name for text in names for name in shell.parts(text)]
     with warnings.catch_warnings(record=True) as warned, words_of_files():
         warnings.simplefilter("always", ModelWarning)
-        given = {"signals": signals, "whole_core": asked.whole_core, **given_options(asked)}
-        folder = export_c(Driveline.load(asked.model), asked.out, **given)
+        given = {"signals": signals, "whole_core": asked.whole_core, "precision": asked.precision}
+        folder = export_c(Driveline.load(asked.model), asked.out, **given, **given_options(asked))
     for warning in warned:
         sys.stderr.write(f"warning: {warning.message}\n")
     if asked.json:

@@ -12,13 +12,13 @@ from clutchwork.base.paths import fitting
 from clutchwork.base.paths import folder as made_folder
 from clutchwork.base.writing import put
 from clutchwork.codegen.model import Exported, chosen, files
+from clutchwork.codegen.single import is_single, refuse
 from clutchwork.codegen.sources import GENERATED, sources
 from clutchwork.declare.calls import explained
 from clutchwork.declare.options import Options
 from clutchwork.declare.schema import Role
 from clutchwork.driveline.driveline import Driveline
 from clutchwork.results.channels import channels
-from clutchwork.run.begin import new_run
 from clutchwork.run.settings import merged
 
 TEMPLATES = Path(__file__).parent / "templates"
@@ -61,14 +61,16 @@ def export_c(
     signals: Sequence[str] | None = None,
     options: Options | None = None,
     whole_core: bool = False,
+    precision: str = "double",
     **changes: Any,
 ) -> Path:
     """Write C and C++ of a Driveline or a System into a folder; its path.
 
     Parameters: t_end [s]; signals, names of what main.c prints, all by default; options, an `Options`, or its fields by
     name (rtol=, dt=, method= ...); whole_core, whether the core has all kinds of elements and laws, so that its library
-    serves other models too, else those of this model. What is left out is that of the settings of the model, as for
-    `simulate`. `make` in the folder builds it, with a C and a C++20 compiler and nothing else. What is in it:
+    serves other models too, else those of this model; precision of the steps of method="fixed", "single" for processors
+    without another one. What is left out is that of the settings of the model, as for `simulate`. `make` in the folder
+    builds it, with a C and a C++20 compiler and nothing else. What is in it:
     docs/guide/export.md.
     """
     where = fitting("cw.export_c", folder, "c")
@@ -79,7 +81,11 @@ def export_c(
     if made.times is not None:
         raise ValueError("times cannot be exported: give dt, the spacing of the grid")
     known = channels(system, made.angles, made.work)
-    exported = Exported(system, end, made.dt or (end - made.t_start) / INTERVALS, made, chosen(signals, known))
+    single = is_single(precision)
+    if single:
+        refuse(system, made)
+    spacing = made.dt or (end - made.t_start) / INTERVALS
+    exported = Exported(system, end, spacing, made, chosen(signals, known), single)
     _refuse_large(exported)
     return _write(exported, made_folder(where), whole_core)
 
@@ -92,10 +98,10 @@ def _refuse_large(exported: Exported) -> None:
 
 
 def _write(exported: Exported, folder: Path, whole: bool) -> Path:
-    about = {"README.md": readme(exported, new_run(exported.data).memory_size)}
+    about = {"README.md": readme(exported, exported.memory)}
     for name, lines in {**files(exported), **about}.items():
         _put(folder / name, ("\n".join(lines) + "\n").encode())
-    core = {**sources(), GENERATED / FILE: ("\n".join(parts(exported.system, whole)) + "\n").encode()}
+    core = {**sources(), GENERATED / FILE: ("\n".join(parts(exported.system, whole, exported.single)) + "\n").encode()}
     for path, content in core.items():
         _put(folder / "core" / path, content)
     # these belong to their editor
@@ -123,10 +129,15 @@ def readme(model: Exported, memory: int) -> Iterator[str]:
     yield from ("", *NEEDS)
 
 
-def parts(system: System, whole: bool) -> Iterator[str]:
-    """The header that says which kinds and forms a model needs, which registry.gen.hpp includes; whole: all of them."""
+def parts(system: System, whole: bool, single: bool = False) -> Iterator[str]:
+    """The header that says what a model needs, which registry.gen.hpp includes.
+
+    Kinds and forms, all of them where it is to be `whole`, and whether steps have single precision.
+    """
     yield from ("// What the exported model needs of the core; a System that needs more is refused.", "#pragma once")
     yield from ("// one run at a time", "#define CLUTCHWORK_ALONE")
+    if single:
+        yield from ("// steps of one length have single precision", "#define CLUTCHWORK_SINGLE")
     if whole:
         return
     for role, array in KINDS.items():

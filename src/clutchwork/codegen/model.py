@@ -36,11 +36,18 @@ class Exported:
     dt: float  # s
     options: Options
     printed: tuple[str, ...]
+    single: bool = False  # precision of its steps
 
     @cached_property
     def data(self) -> bytes:
         """The frozen System."""
         return self.system.to_bytes()
+
+    @cached_property
+    def memory(self) -> int:
+        """Memory of a run [bytes]."""
+        run = new_run(self.data)
+        return int(run.single_size if self.single else run.memory_size)
 
     @cached_property
     def wiring(self) -> Wiring:
@@ -92,12 +99,11 @@ class Exported:
 
 def header(model: Exported) -> Iterator[str]:
     """model.h: sizes, settings, layout of rows and events, signals."""
-    memory = new_run(model.data).memory_size
     yield f"/* The model {comment(model.system.name)}. {MADE} */"
     yield from ("#ifndef MODEL_H", "#define MODEL_H", "", "#include <math.h>", "")
     yield from ("#include <clutchwork/c_api.h>", '#include "model_system.h"', "")
     yield "/* Memory of a run, aligned to 16 bytes; cw_load refuses when another machine needs more. */"
-    yield from (f"#define MODEL_MEMORY {memory}", "")
+    yield from (f"#define MODEL_MEMORY {model.memory}", "")
     yield "/* The grid of main.c: t_start, t_start + dt ... t_end. */"
     yield f"#define MODEL_T_START {literal(model.options.t_start)} /* s */"
     yield f"#define MODEL_T_END {literal(model.t_end)} /* s */"

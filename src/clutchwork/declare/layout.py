@@ -216,6 +216,9 @@ REFUSALS = {
     5: ("many_speeds", f"the model has more than {MOST_FIXED_SPEEDS} independent speeds"),
     6: ("bristles", "its bristles or teeth move within any step"),
     7: ("flows", "pressures of its oil change within any step"),
+    8: ("single_stops", "an impact of a stop needs double precision"),
+    9: ("single_loads", "friction that follows a load needs double precision"),
+    10: ("single_waves", "a sine over a long time needs double precision"),
 }
 
 # what a run counts, in order: (name, meaning)

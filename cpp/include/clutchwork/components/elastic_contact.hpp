@@ -11,11 +11,11 @@ enum class Touch : int { firm, hard, slack };
 /// One contact: how deep, how fast it closes, and how its damping goes.
 template <class S>
 struct ElasticContact {
-  S spring;         ///< force of the spring, zero or above
-  S damping;        ///< force of the damper, above zero where it closes
-  S closing;        ///< rate at which it closes
-  double strength;  ///< damping over closing
-  bool limited;     ///< the damping is never above the spring
+  S spring;          ///< force of the spring, zero or above
+  S damping;         ///< force of the damper, above zero where it closes
+  S closing;         ///< rate at which it closes
+  Real<S> strength;  ///< damping over closing
+  bool limited;      ///< the damping is never above the spring
 
   /// Force that pushes the bodies apart.
   CLUTCHWORK_HOT S push(Touch touch) const {

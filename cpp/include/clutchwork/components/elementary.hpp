@@ -30,7 +30,7 @@ static_assert(FLT_EVAL_METHOD == 0,
               "clutchwork needs doubles without further digits: compile it with -msse2 -mfpmath=sse");
 
 // these are exact in every library
-using std::abs, std::floor, std::fmod, std::sqrt;
+using std::abs, std::floor, std::fmod, std::nearbyint, std::sqrt;
 
 /// A number in two parts, the second one too small for the first.
 struct Pair {

@@ -126,14 +126,14 @@ struct Starts {
 /// The segments of a signal: those of the system, or those that were set in their place.
 template <class G>
 struct Segments {
-  Starts<G, const G*> start;
+  Starts<Instant<G>, const Instant<G>*> start;
   const G* coef;
 };
 template <class T>
 Segments<Given<T>> segments_of(const Workspace<T>& ws, int i) {
   const int set = ws.in.signal[i].set;
   const std::int64_t first = ws.sys.input_first[i], place = segment_size * first;
-  const Given<T> period = ws.sys.input_period[i];
+  const Instant<Given<T>> period = ws.sys.input_period[i];
   if (set > 0) return {{set, period, ws.in.set_time + first}, ws.in.set_coef + place};
   return {{ws.sys.input_count[i], period, ws.sys.segment_time + first}, ws.sys.segment_coef + place};
 }
@@ -150,7 +150,7 @@ void seek(Workspace<T>& ws, int i, double t) {
   using G = Given<T>;
   SignalOf<G>& signal = ws.in.signal[i];
   if (is_held(ws, i)) {
-    signal.knot = G(infinity), signal.coef = nullptr;
+    signal.knot = Instant<G>(infinity), signal.coef = nullptr;
     signal.varying = signal.idle = false, signal.linear = true;
     return;
   }
@@ -159,7 +159,7 @@ void seek(Workspace<T>& ws, int i, double t) {
   const bool started = value(start(signal.segment)) <= t;
   signal.start = start(signal.segment);
   signal.coef = coef + segment_size * (signal.segment % start.n);
-  signal.knot = start.exist(signal.segment + 1) ? start(signal.segment + 1) : G(infinity);
+  signal.knot = start.exist(signal.segment + 1) ? start(signal.segment + 1) : Instant<G>(infinity);
   signal.idle = false;
   // before its start a periodic signal rests at the value of its last segment
   if (!started && value(start.period) > 0) {
@@ -180,7 +180,7 @@ CLUTCHWORK_INLINE Given<T> since_start(const Workspace<T>& ws, const SignalOf<Gi
   if constexpr (has_tangents<T>)
     return (T(t) - signal.start) + ws.moved.shift;
   else
-    return t - signal.start;
+    return Given<T>(t - signal.start);
 }
 
 /// Value of signal i at time t on its present segment.
@@ -217,12 +217,12 @@ void signal_range(const Workspace<T>& ws, int i, double t, double& low, double& 
   // a shared state may go anywhere
   low = -infinity, high = infinity;
   if (i >= ws.sys.inputs) return;
-  low = high = value(signal_value(ws, i, t));
+  low = high = double(value(signal_value(ws, i, t)));
   if (!signal.varying) return;
-  auto c = [&](int k) { return value(signal.coef[k]); };
+  auto c = [&](int k) { return double(value(signal.coef[k])); };
   const double knot = value(signal.knot);
   if (signal.linear) {
-    const double end = knot < infinity ? value(signal_value(ws, i, knot)) : c(1) > 0 ? infinity : -infinity;
+    const double end = knot < infinity ? double(value(signal_value(ws, i, knot))) : c(1) > 0 ? infinity : -infinity;
     low = smaller(low, end), high = larger(high, end);
   } else if (c(1) == 0 && c(2) == 0 && c(3) == 0 && c(7) >= 0 && c(11) >= 0) {
     low = c(0) - abs(c(4)) - abs(c(8)), high = c(0) + abs(c(4)) + abs(c(8));

@@ -43,7 +43,7 @@ CLUTCHWORK_INLINE Axis<G> axis_of(const Curve<T>& c, const G* points) {
 }
 
 /// Number of the interval that holds x, the outer ones for what lies beyond.
-CLUTCHWORK_INLINE int interval_of(const auto& axis, double x) {
+CLUTCHWORK_INLINE int interval_of(const auto& axis, auto x) {
   int low = 0, high = axis.count - 2;
   while (low < high) {
     const int middle = (low + high + 1) / 2;
@@ -140,18 +140,18 @@ struct Cells {
   }
   /// Watch both borders of a cell, over a scale.
   template <class S>
-  void watch(const S& x, int cell, double scale, Least<S>& least) const {
+  void watch(const S& x, int cell, Real<G> scale, Least<S>& least) const {
     if (cell > 0 && cell <= borders()) least.watch((x - S(border(cell - 1))) / S(scale), below);
     if (cell >= 0 && cell < borders()) least.watch((S(border(cell)) - x) / S(scale), above);
   }
   /// The cell that holds x; of two the upper one.
-  int cell_of(double x) const {
+  int cell_of(Real<G> x) const {
     int cell = 0;
     while (cell < borders() && x >= value(border(cell))) ++cell;
     return cell;
   }
   /// The cell behind a border, or the one beyond it that holds x where that has jumped.
-  int next(int cell, int who, double x, double scale) const {
+  int next(int cell, int who, Real<G> x, Real<G> scale) const {
     const int to = cell + (who == above ? 1 : -1);
     return settled_interval(x, borders(), larger(to, 0), border_slack * scale, [&](int i) { return value(border(i)); });
   }
@@ -197,14 +197,16 @@ struct OverTemperature {
 };
 
 /// How far x is inside the ends of an axis, round-off conceded; below zero outside.
-CLUTCHWORK_INLINE double room_inside(const auto& axis, double x) {
-  const double first = value(axis[0]), last = value(axis.last());
-  return smaller(x - first, last - x) + 1e-9 * (last - first);
+template <class X>
+CLUTCHWORK_INLINE X room_inside(const auto& axis, X x) {
+  const X first = value(axis[0]), last = value(axis.last());
+  return smaller(x - first, last - x) + roundoff<X>(1e-9, 1e-6) * (last - first);
 }
 
 /// The same for a slip, which passes zero: its table starts there.
-CLUTCHWORK_INLINE double room_for_slip(const auto& axis, double slip) {
-  return (1 + 1e-9) * value(axis.last()) - abs(slip);
+template <class X>
+CLUTCHWORK_INLINE X room_for_slip(const auto& axis, X slip) {
+  return (1 + roundoff<X>(1e-9, 1e-6)) * value(axis.last()) - abs(slip);
 }
 
 /// No kink there.

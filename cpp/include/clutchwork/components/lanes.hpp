@@ -151,6 +151,7 @@ struct NumberOf<Lanes<R>> {
   using Truth = Mask<R>;
   static constexpr bool lanes = true;
   static constexpr bool tangents = false;
+  static constexpr bool single = false;
   using Given = double;
   using Point = Lanes<R>;
 };

@@ -77,14 +77,14 @@ int settled_piece(const Workspace<T>& ws, const Branch<T>& b, const T* rate) {
 
 /// Rate at which a switching element oscillates by itself [1/s].
 template <class T>
-double own_pace(const Workspace<T>& ws, const Branch<T>& b, T rate) {
+Real<T> own_pace(const Workspace<T>& ws, const Branch<T>& b, T rate) {
   return visit_torque(b.kind, [&](auto tag) {
     using E = typename decltype(tag)::type;
     if constexpr (Paced<E>) {
       const auto& p = *reinterpret_cast<const typename E::template Params<T>*>(b.params);
       return value(E::pace(p, At<T>{rate, ws.state + b.state, b.input, b.piece, points_of(ws)}));
     }
-    return 0.0;
+    return Real<T>(0);
   });
 }
 inline bool is_settling(int kind) {
@@ -208,7 +208,7 @@ inline bool is_settling_law(int law) {
 
 /// The piece that holds x; at a kink the one above.
 template <class T>
-int piece_of(const Workspace<T>& ws, int direction, double x) {
+int piece_of(const Workspace<T>& ws, int direction, Real<T> x) {
   int low = 0, high = edge_count(ws, direction);
   while (low < high) {
     const int middle = (low + high) / 2;
@@ -223,7 +223,7 @@ int piece_of(const Workspace<T>& ws, int direction, double x) {
 
 /// The piece of a contact whose law sticks, at a slip.
 template <class T>
-int sliding_piece(const Workspace<T>& ws, int direction, double slip) {
+int sliding_piece(const Workspace<T>& ws, int direction, Real<T> slip) {
   const int interval = piece_of(ws, direction, slip);
   if (!is_settling_law(ws.sys.contact_law[direction - ws.sys.elements])) return interval;
   Branch<T> b = make_branch(ws, direction, forward);

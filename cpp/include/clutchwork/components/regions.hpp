@@ -31,8 +31,8 @@ struct Least {
 };
 
 /// The interval of x among n borders, the present one as long as x is not clearly beyond its ends.
-template <class Border>
-int settled_interval(double x, int n, int present, double slack, Border&& border) {
+template <class X, class Border>
+int settled_interval(X x, int n, int present, std::type_identity_t<X> slack, Border&& border) {
   int k = present < n ? present : n;
   while (k < n && x > border(k) + slack) ++k;
   while (k > 0 && x < border(k - 1) - slack) --k;

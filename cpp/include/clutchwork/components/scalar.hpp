@@ -3,7 +3,7 @@
 
 #include <type_traits>
 
-/// What the core asks of a number. Scalars: double, float, Dual<double, N>, Dual<float, N>.
+/// What the core asks of a number. Scalars: double, float, Single, and Dual over these.
 namespace clutchwork {
 
 /// The plain number behind a scalar: comparisons and decisions use it, in double whatever the scalar.
@@ -20,6 +20,7 @@ struct NumberOf {
   using Truth = bool;
   static constexpr bool lanes = false;
   static constexpr bool tangents = false;  ///< it carries derivatives of the whole run
+  static constexpr bool single = false;    ///< it has single precision alone
   using Given = double;                    ///< a number of the model
   using Point = double;                    ///< a number of its curves
 };
@@ -36,9 +37,15 @@ using Given = typename NumberOf<T>::Given;
 template <class T>
 using Point = typename NumberOf<T>::Point;
 
+/// A tolerance that stands for round-off, by the precision of a scalar.
+template <class T>
+inline constexpr Real<T> roundoff(double in_double, double in_single) {
+  return Real<T>(NumberOf<T>::single ? in_single : in_double);
+}
+
 /// A number that is the same in all lanes, such as a place or a choice.
 template <class T>
-CLUTCHWORK_HOT double common(const T& x) {
+CLUTCHWORK_HOT auto common(const T& x) {
   return value(x);
 }
 

@@ -24,7 +24,7 @@ CLUTCHWORK_HOT List<G> list_of(const Curve<T>& c, const G* points) {
 }
 
 /// Number of the piece that holds a ratio: 0 below the first point, then the interval that ends at that point.
-CLUTCHWORK_HOT int ratio_piece(const auto& ratios, double x) {
+CLUTCHWORK_HOT int ratio_piece(const auto& ratios, auto x) {
   int piece = 0;
   while (piece + 1 < ratios.count && x >= ratios[piece]) ++piece;
   return piece;

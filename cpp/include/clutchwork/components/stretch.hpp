@@ -12,16 +12,16 @@ G piece_slope(const Curve<T>& c, const G* points, int piece) {
 
 /// Width of a curve, 1 where it has a single point: what counts as far along it.
 template <class T, class G>
-double curve_width(const Curve<T>& c, const G* points) {
+Real<T> curve_width(const Curve<T>& c, const G* points) {
   const G* p = points + 3 * int(value(c.first));
   const int n = int(value(c.count));
-  return n > 1 ? value(p[3 * (n - 1)]) - value(p[0]) : 1.0;
+  return n > 1 ? value(p[3 * (n - 1)]) - value(p[0]) : Real<T>(1);
 }
 
 /// The piece that x is on; the present one where x is at its end.
 template <class T>
-int stretch_of(const Curve<T>& c, const auto* points, double x, int piece) {
-  const double slack = 1e-12 * curve_width(c, points);
+int stretch_of(const Curve<T>& c, const auto* points, Real<T> x, int piece) {
+  const Real<T> slack = roundoff<T>(1e-12, 1e-6) * curve_width(c, points);
   while (piece > 0 && x < value(curve_edge(c, points, piece - 1)) - slack) --piece;
   while (piece < curve_edges(c) && x > value(curve_edge(c, points, piece)) + slack) ++piece;
   return piece;

@@ -49,15 +49,15 @@ CLUTCHWORK_INLINE S stribeck_share(const StribeckCurve<T>& c, S x) {
 
 /// Slip beyond which nothing of the static excess is left that counts: a step that starts there must not run over it.
 template <class T>
-CLUTCHWORK_INLINE double stribeck_reach(const StribeckCurve<T>& c) {
-  const double speed = value(c.speed);
+CLUTCHWORK_INLINE Real<T> stribeck_reach(const StribeckCurve<T>& c) {
+  const Real<T> speed = value(c.speed);
   switch (c.shape) {
     case choice::Shape::tustin:
       return 12 * speed;
     case choice::Shape::lorentz:
       return 10 * speed;
     case choice::Shape::power:
-      return pow(12, 1 / value(c.exponent)) * speed;
+      return pow(Real<T>(12), 1 / value(c.exponent)) * speed;
     default:
       return 3.5 * speed;
   }

@@ -69,7 +69,7 @@ T fault_margin(const Workspace<T>& ws, int c) {
   });
 }
 template <class T>
-double fault_trigger(const Workspace<T>& ws, int c) {
+Real<T> fault_trigger(const Workspace<T>& ws, int c) {
   return value(fault_margin(ws, c));
 }
 
@@ -123,7 +123,7 @@ bool load_bends(const Workspace<T>& ws, int c) {
 /// Whether a contact is pressed: a load now, or one that is about to rise from zero.
 template <class T>
 bool is_pressed(const Workspace<T>& ws, int c) {
-  const double load = value(load_of(ws, c));
+  const auto load = value(load_of(ws, c));
   return load != 0 ? load > 0 : value(load_slope(ws, c)) > 0;
 }
 
@@ -148,12 +148,12 @@ T usable_capacity(const Workspace<T>& ws, int c, int direction) {
 
 /// Tolerance under which a slip counts as zero. docs/theory/contacts.md (14)
 template <class T>
-double slip_tolerance(const Workspace<T>& ws) {
-  double largest = 0;
+Real<T> slip_tolerance(const Workspace<T>& ws) {
+  Real<T> largest = 0;
   for (int i = 0; i < ws.sys.speeds; ++i) {
     if (abs(value(ws.v[i])) > largest) largest = abs(value(ws.v[i]));
   }
-  return 1e-10 * (1 + largest);
+  return roundoff<T>(1e-10, 4e-6) * (1 + largest);
 }
 
 /// A contact without inertia on either side of its slip: prescribed speeds alone decide it.

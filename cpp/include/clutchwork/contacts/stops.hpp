@@ -41,7 +41,7 @@ T stop_end(const Workspace<T>& ws, int c, int side) {
 }
 /// Slip below which a stop rests.
 template <class T>
-double rest_speed(const Workspace<T>& ws, int c) {
+Real<T> rest_speed(const Workspace<T>& ws, int c) {
   return value(visit_stop(ws, c, [&](auto tag, const auto& p) { return decltype(tag)::type::rest_speed(p); }));
 }
 
@@ -53,13 +53,13 @@ CLUTCHWORK_HOT int place_of(const Workspace<T>& ws, int c) {
 
 /// Round-off of a position against its ends.
 template <class T>
-double stop_noise(const Workspace<T>& ws, int c) {
-  double size = abs(value(ws.state[place_of(ws, c)]));
+Real<T> stop_noise(const Workspace<T>& ws, int c) {
+  Real<T> size = abs(value(ws.state[place_of(ws, c)]));
   for (int side = -1; side <= 1; side += 2) {
-    const double end = abs(value(stop_end(ws, c, side)));
+    const Real<T> end = abs(value(stop_end(ws, c, side)));
     if (end < infinity) size = larger(size, end);
   }
-  return 1e-14 * size + 1e-18;
+  return roundoff<T>(1e-14, 1e-6) * size + roundoff<T>(1e-18, 1e-12);
 }
 
 /// Speed at which a stop that is met on a side at a closing speed is left: none below the speed of rest, or after a
@@ -134,7 +134,7 @@ bool impact(Workspace<T>& ws, int n, bool all, double tolerance) {
 /// Stops that are at an end and do not leave it are closed, all others open.
 template <class T>
 void close_stops(Workspace<T>& ws) {
-  const double tolerance = slip_tolerance(ws);
+  const Real<T> tolerance = slip_tolerance(ws);
   for (int c = 0; c < ws.sys.contacts; ++c) {
     if (!is_stop(ws, c)) continue;
     const int side = side_at(ws, c);
@@ -168,7 +168,7 @@ void stay_at_ends(const Workspace<T>& ws, T* state) {
 /// docs/theory/play.md, rule 1
 template <class T>
 bool collide_all(Workspace<T>& ws, bool& any) {
-  const double tolerance = slip_tolerance(ws);
+  const Real<T> tolerance = slip_tolerance(ws);
   const int most = 20 + 4 * int(ws.sys.contacts);
   for (int round = 0; round < most + 2; ++round) {
     int n;
@@ -191,7 +191,7 @@ bool lingers(const Workspace<T>& ws, int c, double tolerance) {
 /// Impacts, and stops that these have left below the speed of rest brought to rest. docs/theory/play.md, rule 2
 template <class T>
 bool collide(Workspace<T>& ws) {
-  const double tolerance = slip_tolerance(ws);
+  const Real<T> tolerance = slip_tolerance(ws);
   bool any = false;
   if (!collide_all(ws, any)) return false;
   if (!any) return true;
@@ -202,7 +202,7 @@ bool collide(Workspace<T>& ws) {
 /// Stops that a decision has not locked are open, unless prescribed speeds drive them on.
 template <class T>
 void open_stops(Workspace<T>& ws) {
-  const double tolerance = slip_tolerance(ws);
+  const Real<T> tolerance = slip_tolerance(ws);
   for (int c = 0; c < ws.sys.contacts; ++c) {
     if (!is_stop(ws, c) || (ws.contact.loaded[c] && ws.contact.mode[c] == locked)) continue;
     if (ws.contact.side[c] * value(rate_of(ws, int(ws.sys.elements) + c)) > tolerance) continue;

@@ -38,7 +38,7 @@ struct AirDrag : declared::AirDrag {
   }
   template <class T>
   static int settle(const Params<T>&, const At<T>& at) {
-    const double u = value(at.rate - at.input[Input::wind]);
+    const auto u = value(at.rate - at.input[Input::wind]);
     return u == 0 ? at.piece : u < 0 ? behind : ahead;
   }
 };

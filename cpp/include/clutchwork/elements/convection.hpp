@@ -43,7 +43,7 @@ struct Convection : declared::Convection {
     if (who == ahead || who == behind) x.side = who == ahead ? 1 : -1, x.interval += x.interval < x.count;
     const auto* points = at.points + 3 * int(common(p.conductance.first));
     auto border = [&](int i) { return value(points[3 * i]); };
-    const double speed = x.side * value(at.input[Input::speed]), slack = border_slack * (1 + abs(border(x.count - 1)));
+    const auto speed = x.side * value(at.input[Input::speed]), slack = border_slack * (1 + abs(border(x.count - 1)));
     const int reached = settled_interval(speed, x.count, x.interval, slack, border);
     x.interval = larger(reached, x.lowest);
     return x.number();

@@ -32,7 +32,7 @@ struct DiaphragmSpring : declared::DiaphragmSpring {
   template <class T, class S>
   static S margin(const Params<T>& p, const At<S>& at, int& who) {
     const auto table = cells(p, at.points);
-    const double width = width_of(table.axis);
+    const auto width = width_of(table.axis);
     Least<S> least(who);
     table.watch(pressed(p, at), at.piece / 2, width, least);
     least.watch(S(is_free(at.piece) ? -1 : 1) * travel(p, at) / S(width), touches);
@@ -50,9 +50,9 @@ struct DiaphragmSpring : declared::DiaphragmSpring {
   static constexpr int touches = 2;
 
   static bool is_free(int piece) { return piece % 2 != 0; }
-  static double width_of(const auto& axis) {
-    const double width = value(axis.last()) - value(axis[0]);
-    return width > 0 ? width : 1;
+  static auto width_of(const auto& axis) {
+    const auto width = value(axis.last()) - value(axis[0]);
+    return width > 0 ? width : decltype(value(axis.last()))(1);
   }
   template <class T, class G>
   static Cells<G> cells(const Params<T>& p, const G* points) {

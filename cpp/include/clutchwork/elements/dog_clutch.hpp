@@ -22,7 +22,7 @@ struct DogClutch : declared::DogClutch {
   enum Piece : int { apart, fast, blocked, loose, ahead, behind, slack_ahead, slack_behind };
 
   template <class T>
-  static double pitch(const Params<T>& p) {
+  static Real<T> pitch(const Params<T>& p) {
     return 6.283185307179586 / value(p.teeth);
   }
   /// Where the sleeve is wanted: above `reach` the teeth are to mesh.
@@ -145,7 +145,7 @@ struct DogClutch : declared::DogClutch {
   /// Angle from the middle of the nearest gap [rad].
   template <class T>
   static T off_centre(const Params<T>& p, const T* state) {
-    return state[angle] - T(pitch(p) * std::nearbyint(value(state[angle]) / pitch(p)));
+    return state[angle] - T(pitch(p) * nearbyint(value(state[angle]) / pitch(p)));
   }
   /// In mesh the angle is counted from the middle of the gap, which the teeth do not leave.
   template <class T>
@@ -164,7 +164,7 @@ struct DogClutch : declared::DogClutch {
     if (at.piece == apart && value(excess(p, at)) > 0) return fast;
     if (value(p.pointed) != 0) return state[angle] = T(0), loose;
     if (abs(value(off_centre(p, state))) * 2 < value(p.gap)) return mesh(p, state);
-    state[angle] -= T(pitch(p) * std::floor(value(state[angle]) / pitch(p)));
+    state[angle] -= T(pitch(p) * floor(value(state[angle]) / pitch(p)));
     return blocked;
   }
 };

@@ -47,7 +47,7 @@ struct Driver : declared::Driver {
     const S u = wanted(p, at), sum = at.state[integral];
     // on the border between the pedals where it goes tells: the other one stays released, to the last bit
     if constexpr (requires { u.d; }) {
-      const double slope = value(u.d[0]);
+      const auto slope = value(u.d[0]);
       if (value(u) == 0 && foot == brakes && slope > 0) return who = rises, S(-1e-300) + u;
       if (value(u) == 0 && foot == drives && slope < 0) return who = sinks, S(-1e-300) + u;
     }

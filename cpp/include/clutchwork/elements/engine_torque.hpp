@@ -227,7 +227,7 @@ struct EngineTorque : declared::EngineTorque {
     if (value(p.ripples) == 0) return sum;
     const NumberList orders(p.orders, at.points), sizes(p.amplitudes, at.points), phases(p.phases, at.points);
     const S angle = own(p, at, crank);
-    double most = 0;
+    Real<S> most = 0;
     for (int i = 0; i < orders.count; ++i) {
       sum += S(sizes[i]) * cos(S(orders[i]) * angle + S(phases[i]));
       most += abs(value(sizes[i]));
@@ -252,7 +252,7 @@ struct EngineTorque : declared::EngineTorque {
   static S most(const Params<T>& p, const At<S>& at, const Place& x) {
     if (p.limiter == choice::Limiter::cut) return S(1 - x.cut);
     const NumberList grid(p.speeds, at.points);
-    const double start = value(grid[x.cell]);
+    const auto start = value(grid[x.cell]);
     if (x.side < 0 || start < value(p.max_speed) - value(p.limit_band)) return S(1);
     return start < value(p.max_speed) ? (S(p.max_speed) - at.rate) / p.limit_band : S(0);
   }

@@ -68,10 +68,10 @@ struct FluidCoupling : declared::FluidCoupling {
     int who;
     if (value(margin(p, at, who)) >= 0) return at.piece;
     const List ratios = list_of(p.speed_ratio, at.points);
-    const double base = value(at.rates[Way::base]), follower = value(at.rates[Way::follower]);
+    const auto base = value(at.rates[Way::base]), follower = value(at.rates[Way::follower]);
     const bool by_base = abs(base) >= abs(follower);
-    const double fast = by_base ? base : follower, slow = by_base ? follower : base;
-    return ratio_piece(ratios, fast == 0 ? 0.0 : slow / fast) + (by_base ? 0 : ratios.count);
+    const auto fast = by_base ? base : follower, slow = by_base ? follower : base;
+    return ratio_piece(ratios, fast == 0 ? decltype(fast)(0) : slow / fast) + (by_base ? 0 : ratios.count);
   }
 
  private:

@@ -120,7 +120,7 @@ struct JenkinsElement : declared::JenkinsElement {
   template <class T>
   static bool is_above(const Params<T>& p, const At<T>& at, int piece) {
     const At<T> there{at.rate, at.state, at.input, piece, at.points};
-    const double most = value(limit(p, there));
+    const auto most = value(limit(p, there));
     return most - side(piece) * value(at.state[friction_torque]) > lag * most;
   }
   /// A piece, and where it slides whether it goes on: the spring would grow faster than the limit, however slowly.
@@ -128,8 +128,8 @@ struct JenkinsElement : declared::JenkinsElement {
   template <class T>
   static int kept(const Params<T>& p, const At<T>& at, int piece) {
     if (mode(piece) == sticks || follows_speed(p)) return piece;
-    const double slope = value(piece_slope(p.limit, at.points, segment(piece)));
-    const double faster = side(piece) * value(p.stiffness) - slope;
+    const auto slope = value(piece_slope(p.limit, at.points, segment(piece)));
+    const auto faster = side(piece) * value(p.stiffness) - slope;
     return faster * value(at.rate) > 0 ? piece : piece_of(segment(piece), sticks);
   }
   /// How much faster the spring would grow than the limit, over its stiffness; the drift of the input is that of the
@@ -144,11 +144,11 @@ struct JenkinsElement : declared::JenkinsElement {
   }
   /// The largest limit of the table: what counts as far from it.
   template <class T>
-  static double largest(const Params<T>& p, const auto* points) {
-    double most = 0;
+  static Real<T> largest(const Params<T>& p, const auto* points) {
+    Real<T> most = 0;
     for (int i = 0; i < int(value(p.limit.count)); ++i)
       most = larger(most, value(points[3 * (int(value(p.limit.first)) + i) + 1]));
-    return most > 0 ? most : 1.0;
+    return most > 0 ? most : Real<T>(1);
   }
 };
 

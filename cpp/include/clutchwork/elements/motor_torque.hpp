@@ -167,13 +167,13 @@ struct MotorTorque : declared::MotorTorque {
     const NumberList kelvin(p.derating, at.points), loads(p.torques, at.points);
     const int n = warmths(p);
     if (n > 1) {
-      const double warm = value(at.input[Input::temperature]);
+      const auto warm = value(at.input[Input::temperature]);
       x.warmth = settled_interval(warm, n - 1, x.warmth, 1e2 * border_slack, [&](int i) { return kelvin[i]; });
     }
     x.clip = settled_clip(p, at, x);
-    const double f = value(torque(p, At<T>{at.rate, at.state, at.input, x.number(p), at.points}));
+    const auto f = value(torque(p, At<T>{at.rate, at.state, at.input, x.number(p), at.points}));
     const Mirrored grid{count_of(p.torques)};
-    const double slack = border_slack * value(p.scale);
+    const auto slack = border_slack * value(p.scale);
     x.load = settled_interval(f, loads_of(p) - 1, x.load, slack, [&](int i) { return grid.border(loads, i); });
     return x.number(p);
   }
@@ -258,16 +258,16 @@ struct MotorTorque : declared::MotorTorque {
   template <class T>
   static int settled_clip(const Params<T>& p, const At<T>& at, const Place& x) {
     const Range<T> range(p, at, x);
-    const double w = value(range.w), r = value(wanted(p, at)), slack = border_slack * value(p.scale);
+    const auto w = value(range.w), r = value(wanted(p, at)), slack = border_slack * value(p.scale);
     // how far a pull is beyond a limit of torque or of power, in the size of a torque
-    auto beyond = [&](double pull, const T& most, const T& rated) {
+    auto beyond = [&](Real<T> pull, const T& most, const T& rated) {
       return larger(pull - value(most), (pull * w - value(rated)) / (1 + w));
     };
     auto by_power = [&](bool present, bool now, const T& most, const T& rated) {
-      const double spare = (value(rated) - value(most) * w) / (1 + w);
+      const auto spare = (value(rated) - value(most) * w) / (1 + w);
       return present && abs(spare) <= slack ? now : spare < 0;
     };
-    const double above = beyond(r, range.up, range.up_power), below = beyond(-r, range.down, range.down_power);
+    const auto above = beyond(r, range.up, range.up_power), below = beyond(-r, range.down, range.down_power);
     const bool was_high = x.clip > free, was_low = x.clip < free;
     if (was_high ? above >= -slack : above > slack && !(was_low && below >= -slack))
       return by_power(was_high, x.clip == high_power, range.up, range.up_power) ? high_power : high_torque;

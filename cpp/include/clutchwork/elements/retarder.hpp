@@ -48,7 +48,7 @@ struct Retarder : declared::Retarder {
   /// Whether there is a range of speeds in which the torque has its limit.
   template <class T>
   static bool is_flat(const Params<T>& p) {
-    const double w = value(p.max_power) / value(p.max_torque);
+    const auto w = value(p.max_power) / value(p.max_torque);
     return value(p.capacity) * w * w > value(p.max_torque);
   }
   /// Borders on each side of rest.

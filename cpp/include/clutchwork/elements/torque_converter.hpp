@@ -89,7 +89,7 @@ struct TorqueConverter : declared::TorqueConverter {
     int who = 0;
     if (value(margin(p, at, who)) >= 0) return at.piece;
     const List ratios = list_of(p.speed_ratio, at.points);
-    const double w = value(at.rates[Way::impeller]), t = value(at.rates[Way::turbine]);
+    const auto w = value(at.rates[Way::impeller]), t = value(at.rates[Way::turbine]);
     const int n = ratios.count;
     if (w < 0) return t > 0 ? 2 * n : 2 * n + 1;
     if (value(at.rates[Way::slip]) > 0) return n + ratio_piece(ratios, w / t);
@@ -116,7 +116,7 @@ struct TorqueConverter : declared::TorqueConverter {
   /// The piece that holds the ratio while the impeller drives.
   template <class S>
   static int drives(const auto& ratios, const At<S>& at) {
-    const double w = value(at.rates[Way::impeller]), t = value(at.rates[Way::turbine]);
+    const auto w = value(at.rates[Way::impeller]), t = value(at.rates[Way::turbine]);
     if (value(at.rates[Way::slip]) == 0) return ratios.count - 1;
     return w > 0 ? ratio_piece(ratios, t / w) : 0;
   }

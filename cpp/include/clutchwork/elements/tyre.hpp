@@ -87,7 +87,7 @@ struct Tyre : declared::Tyre {
  private:
   template <class T, class S>
   static int placed(const Params<T>& p, const At<S>& at) {
-    const double v = value(at.rates[Way::speed]), limit = -value(at.rates[Way::slip]) / value(p.slip_limit);
+    const auto v = value(at.rates[Way::speed]), limit = -value(at.rates[Way::slip]) / value(p.slip_limit);
     const int zone = v > value(p.low_speed) ? ahead : v < -value(p.low_speed) ? behind : slow;
     if (abs(limit) > abs(v)) return zone + (limit > 0 ? spinning_ahead : spinning_back);
     return zone + (v < 0 ? rolling_back : rolling_ahead);

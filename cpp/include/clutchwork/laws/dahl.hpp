@@ -42,7 +42,7 @@ struct Dahl : declared::Dahl {
   template <class T>
   static int cross(const Params<T>& p, const At<T>& at, int who, T* state) {
     if (who == turned) return bends;
-    const double left = value(room(p, At<T>{at.rate, state, at.input, at.piece, at.points}));
+    const auto left = value(room(p, At<T>{at.rate, state, at.input, at.piece, at.points}));
     if (at.piece == full || abs(left) > slack) return left > 0 ? bends : beyond;
     state[0] = value(state[0]) < 0 ? -p.kinetic : p.kinetic;
     return full;

@@ -90,8 +90,8 @@ struct FrictionMap : OverTemperature<FrictionMap>, declared::FrictionMap {
   static T outside(const Params<T>& p, const At<T>& at, T& seen) {
     seen = at.rate;
     if (manner(p).extrapolation != choice::Extrapolation::error) return T(1);
-    const double slip = room_for_slip(axis_of(p.speeds, at.points), value(at.rate));
-    const double temperature = room_inside(axis_of(p.temperatures, at.points), value(warm(at)));
+    const auto slip = room_for_slip(axis_of(p.speeds, at.points), value(at.rate));
+    const auto temperature = room_inside(axis_of(p.temperatures, at.points), value(warm(at)));
     if (temperature < slip) seen = warm(at);
     return T(smaller(slip, temperature));
   }

@@ -11,7 +11,7 @@ struct NaiveSign : declared::NaiveSign {
 
   template <class T, class S>
   static S coefficient(const Params<T>& p, const At<S>& at) {
-    const double slip = value(at.rate);
+    const auto slip = value(at.rate);
     return stribeck(p, at.rate) * T(slip > 0 ? 1 : slip < 0 ? -1 : 0) + p.viscous * at.rate;
   }
   template <class T>

@@ -22,7 +22,7 @@ struct Stribeck : declared::Stribeck {
     return 1;
   }
   template <class T>
-  static double edge(const Params<T>& p, const double*, int) {
+  static Real<T> edge(const Params<T>& p, const auto*, int) {
     return stribeck_reach(p);
   }
 };

@@ -34,7 +34,7 @@ bool visit_corners(const Workspace<T>& ws, int c, Range&& range, F&& f) {
 template <class T>
 bool load_may_turn(Workspace<T>& ws, int c) {
   bool below = false, above = false;
-  double size = 0;
+  Real<T> size = 0;
   auto range = [&](int ref, double& low, double& high) {
     signal_range(ws, ws.sys.input_refs[ref], ws.time, low, high);
     return true;
@@ -43,7 +43,7 @@ bool load_may_turn(Workspace<T>& ws, int c) {
     (load < T(0) ? below : above) = true;
     size = larger(size, abs(value(load)));
   });
-  ws.guard.load_size[c] = bounded ? size : 0;
+  ws.guard.load_size[c] = double(bounded ? size : 0);
   return !bounded || (below && above);
 }
 
@@ -88,7 +88,7 @@ void fail(Workspace<T>& ws, int c) {
   // a freewheel that gave way transmits nothing more
   if (kind == sound) kind = cannot_transmit;
   ws.contact.fault[c] = kind;
-  const double e = kinetic_energy(ws), torque = value(ws.event_context.torque[c]);
+  const double e = double(kinetic_energy(ws)), torque = double(value(ws.event_context.torque[c]));
   record(ws, {c, ws.contact.mode[c], ws.contact.mode[c], Cause::fault, 0.0, torque, torque, e, e});
   if (report == int(choice::Report::error)) ws.contact.failed = c;
   if (kind == cannot_transmit) ws.contact.loaded[c] = ws.contact.pressed[c] = 0;

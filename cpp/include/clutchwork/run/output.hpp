@@ -96,18 +96,18 @@ int mode_shown(const Workspace<T>& ws, const Snapshot<T>& shot, int c) {
 
 /// Whether all numbers of a row and the kinetic energy are finite; else detail_row and detail_value tell what is not,
 /// or the speed that has most of the energy.
-template <class T>
-bool is_finite(Workspace<T>& ws, const double* row) {
-  const double* speed = row + ws.row.speed;
+template <class T, class R>
+bool is_finite(Workspace<T>& ws, const R* row) {
+  const R* speed = row + ws.row.speed;
   auto energy_of = [&](std::int64_t n) { return value(ws.sys.inertia[n]) * speed[n] * speed[n]; };
   // sums of their own, which do not wait for each other
-  double part[4] = {}, energy = 0;
+  R part[4] = {}, energy = 0;
   std::int64_t i = 0;
   for (; i + 4 <= ws.row.size; i += 4) {
     for (int k = 0; k < 4; ++k) part[k] += row[i + k] * 0;
   }
   for (; i < ws.row.size; ++i) part[0] += row[i] * 0;
-  const double sum = part[0] + part[1] + part[2] + part[3];
+  const R sum = part[0] + part[1] + part[2] + part[3];
   for (std::int64_t n = 0; n < ws.sys.nodes; ++n) energy += energy_of(n);
   if (sum + energy * 0 == 0) return true;
   std::int64_t which = 0;
@@ -119,7 +119,7 @@ bool is_finite(Workspace<T>& ws, const double* row) {
   }
   ws.detail.component = -1;
   ws.detail.row = int(which);
-  ws.detail.value = row[which];
+  ws.detail.value = double(row[which]);
   return false;
 }
 

@@ -24,7 +24,7 @@ T energy_of_motion(const Workspace<T>& ws) {
   return e;
 }
 template <class T>
-double kinetic_energy(const Workspace<T>& ws) {
+Real<T> kinetic_energy(const Workspace<T>& ws) {
   return value(energy_of_motion(ws));
 }
 

@@ -1,10 +1,18 @@
 #pragma once
 #include <clutchwork/components/bound.hpp>
+#include <clutchwork/components/single.hpp>
 #include <clutchwork/workspace/arena.hpp>
 #include <clutchwork/workspace/settings.hpp>
 
 /// Fixed steps: their history, their matrices and their scratch. docs/theory/fixed-steps.md
 namespace clutchwork {
+
+/// Whether sums over the steps keep what their own precision loses.
+#ifdef CLUTCHWORK_SINGLE
+inline constexpr bool sums_keep = true;
+#else
+inline constexpr bool sums_keep = false;
+#endif
 
 /// Up to so many speeds their rows are whole.
 inline constexpr int most_whole_speeds = 4;
@@ -50,7 +58,7 @@ template <class T>
 struct Fixed {
   // the history, of which saved states have a copy
   double time = -infinity;   ///< [s] end of the last step; where it is not the present time there is no history
-  double before = 0;         ///< [s] length of that step, 0: there was none
+  Real<T> before = 0;        ///< [s] length of that step, 0: there was none
   double origin = 0;         ///< [s] where the present grid of steps begins
   std::int64_t count = 0;    ///< steps on it
   std::int64_t impacts = 0;  ///< since the last of them
@@ -60,6 +68,8 @@ struct Fixed {
   T* kept = nullptr;    ///< of each direction: slope of its torque that is in the matrix [N m s/rad]
   T* torque = nullptr;  ///< of each direction: mean over the last step
   T* held = nullptr;    ///< of each contact: static torque in it, against slip backward, then forward
+  // what the sums of speeds, states, angles and energies have not taken yet: single precision alone
+  T *speed_low = nullptr, *state_low = nullptr, *angle_low = nullptr, *energy_low = nullptr;
 
   // what a step changes beside its results, as it was before it
   std::int64_t* segment = nullptr;  ///< of each signal: the segment that it is on
@@ -67,8 +77,9 @@ struct Fixed {
   std::int64_t counted = 0;
 
   // made anew where it is not there
-  bool ready = false;         ///< the branches are packed
-  double length = 0;          ///< [s] of the steps whose matrices there are, 0: none
+  bool ready = false;         ///< the branches are packed; of a run beside one of single precision: that one is placed
+  void* image = nullptr;      ///< where that one is
+  Real<T> length = 0;         ///< [s] of the steps whose matrices there are, 0: none
   bool has_massless = false;  ///< some speeds have no inertia
   int* massless = nullptr;    ///< of each direction: whether some of these are in its rate
   int* bends = nullptr;       ///< of each direction: its piece follows from where it is
@@ -77,8 +88,11 @@ struct Fixed {
   T* factor = nullptr;       ///< Cholesky factor of the matrix of a step, by rows
   T* answer = nullptr;       ///< change of the speeds by a unit impulse of each contact
   T* mobility = nullptr;     ///< of the contacts, by rows: change of slips by unit impulses
-  T* rate_rows = nullptr;    ///< of few speeds: rates of directions by them
-  T* node_rows = nullptr;    ///< and speeds of nodes
+  // where they are made of single numbers, and impulses are looked for
+  Twofold *wide_factor = nullptr, *wide_answer = nullptr, *wide_mobility = nullptr, *wide_impulse = nullptr;
+  Twofold *wide_slip = nullptr, *wide_solved = nullptr, *wide_free = nullptr;
+  T* rate_rows = nullptr;  ///< of few speeds: rates of directions by them
+  T* node_rows = nullptr;  ///< and speeds of nodes
 
   // scratch of a step
   T *ahead = nullptr, *state_ahead = nullptr, *given_ahead = nullptr;  ///< speeds and states predicted for its middle
@@ -91,11 +105,12 @@ struct Fixed {
   T* gained = nullptr;                               ///< of each direction: rate that changes of the speeds make
   T* mean = nullptr;                                 ///< of each direction: torque
   T *node_end = nullptr, *node_gain = nullptr;       ///< of each node: speed at the end, its change
+  T* row = nullptr;                                  ///< one row, where that of the caller is of another precision
   T *impulse = nullptr, *gradient = nullptr, *lower = nullptr, *upper = nullptr, *weight = nullptr;
   T *end_slip = nullptr, *solved = nullptr, *free_factor = nullptr;
   T *kinetic = nullptr, *limit = nullptr;  ///< of each contact: what resists slip backward, then forward [N m]
   T* share = nullptr;                      ///< of each contact: where in the step it breaks away
-  T* instant = nullptr;                    ///< [s] of each contact: when its mode changes
+  double* instant = nullptr;               ///< [s] of each contact: when its mode changes
   int *side = nullptr, *list = nullptr, *box = nullptr, *mode = nullptr;
 
   // of each load: its impulse by changes of speeds, of prescribed ones, by impulses of contacts; without these
@@ -105,7 +120,7 @@ struct Fixed {
   Bound<T>* load_bound = nullptr;                 ///< of each load: what holds against slip backward, then forward
   T *load_matrix = nullptr, *load_off = nullptr;  ///< of those at a bound: their system, what they are off
   int *follower = nullptr, *load_line = nullptr;  ///< which these are; lines of all bounds in the last round
-  double load_miss = 0;                           ///< the largest part of itself that an impulse is off its bound
+  Real<T> load_miss = 0;                          ///< the largest part of itself that an impulse is off its bound
 
   template <class P, class A>
   static void lay_out(P& p, A& a, const Sizes& n) {
@@ -115,6 +130,15 @@ struct Fixed {
     a.take(p.gain, nv), a.take(p.state_gain, ns), a.take(p.given_gain, np), a.take(p.given, np);
     a.take(p.kept, nd), a.take(p.torque, nd), a.take(p.held, 2 * nc);
     FixedPlan<T>::lay_out(p.plan, a, nd, nc, has ? n.loads : 0, has ? n.references : 0);
+    if constexpr (NumberOf<T>::single || (sums_keep && !has_tangents<T>)) {
+      a.take(p.speed_low, nv), a.take(p.state_low, ns), a.take(p.angle_low, has ? n.nodes : 0);
+      a.take(p.energy_low, has ? n.directions + n.prescribed + n.supplies + n.meters : 0);
+      if constexpr (NumberOf<T>::single) {
+        a.scratch(p.row, n.row), a.scratch(p.wide_factor, nv * nv), a.scratch(p.wide_answer, nc * nv);
+        a.scratch(p.wide_mobility, nc * nc), a.scratch(p.wide_impulse, nc), a.scratch(p.wide_slip, nc);
+        a.scratch(p.wide_solved, nc), a.scratch(p.wide_free, nc * nc);
+      }
+    }
     a.take(p.bends, nd), a.take(p.massless, nd), a.take(p.two_sided, nc);
     a.scratch(p.factor, nv * nv), a.scratch(p.answer, nc * nv), a.scratch(p.mobility, nc * nc);
     const auto nn = has ? n.nodes : 0, whole = nv <= most_whole_speeds ? nv : 0;

@@ -62,10 +62,21 @@ struct Moved {
   }
 };
 
-/// Plain numbers have none.
+/// Plain numbers have none; where they are single, so are the points of the curves.
 template <class T>
-  requires(!has_tangents<T>)
+  requires(!has_tangents<T> && !NumberOf<T>::single)
 struct Moved<T> {
+  template <class P, class A>
+  static void lay_out(P&, A&, const Sizes&) {}
+};
+
+/// Beside a run of single precision: its curves, and the run in double that decides where it begins.
+template <class T>
+  requires(NumberOf<T>::single)
+struct Moved<T> {
+  T* points = nullptr;
+  Workspace<double>* outer = nullptr;
+
   template <class P, class A>
   static void lay_out(P&, A&, const Sizes&) {}
 };

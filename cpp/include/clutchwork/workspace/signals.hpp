@@ -13,8 +13,8 @@ inline constexpr int segment_size = 12;
 template <class G>
 struct SignalOf {
   std::int64_t segment = 0;
-  G start = G(0);  ///< [s] start of the present segment
-  G knot = G(0);   ///< [s] start of the next one
+  Instant<G> start = Instant<G>(0);  ///< [s] start of the present segment
+  Instant<G> knot = Instant<G>(0);   ///< [s] start of the next one
   const G* coef = nullptr;
   G held = G(0);  ///< value of a signal that is set from outside
   bool varying = false, linear = true, idle = false;
@@ -30,7 +30,8 @@ using Signal = SignalOf<double>;
 template <class T>
 struct Signals {
   SignalOf<Given<T>>* signal = nullptr;
-  Given<T>*set_time = nullptr, *set_coef = nullptr;  ///< of the segments that were set, where the system has its own
+  Instant<Given<T>>* set_time = nullptr;  ///< of the segments that were set, where the system has its own
+  Given<T>* set_coef = nullptr;
   int n_refs = 0, n_varying = 0;
   int *ref_signal = nullptr, *varying = nullptr;
   T *u = nullptr, *du = nullptr;  ///< value of each reference; its time derivative where it is a signal or a rate

@@ -1,4 +1,5 @@
 #pragma once
+#include <clutchwork/components/single.hpp>
 #include <clutchwork/run/fixed/products.hpp>
 
 /// Impulses of all contacts over one step, within their bounds, by a primal-dual active set:
@@ -8,11 +9,11 @@ namespace clutchwork::fixed {
 /// Minimise 1/2 x'(W + E)x + g'x over lower <= x <= upper; E is the diagonal `weight`. Views into memory of the caller.
 struct Boxes {
   int n;
-  const double* mobility;  ///< W, n x n
-  const double *gradient, *lower, *upper, *weight;
-  double *x, *slope;  ///< solution, and W x + g: the slips at the end of the step
-  int* side;          ///< 0 free, -1 at lower, 1 at upper: a guess, then the solution
-  double *solved, *factor;
+  const wide* mobility;  ///< W, n x n
+  const real *gradient, *lower, *upper, *weight;
+  wide *x, *slope;  ///< solution, and W x + g: the slips at the end of the step
+  int* side;        ///< 0 free, -1 at lower, 1 at upper: a guess, then the solution
+  wide *solved, *factor;
   int* list;
 };
 
@@ -20,9 +21,9 @@ struct Boxes {
 inline constexpr int most_sets = 45;
 
 /// W x + g of contact i.
-CLUTCHWORK_INLINE double slope_of(const Boxes& p, int n, int i) {
-  double s = p.gradient[i];
-  const double* row = p.mobility + i * n;
+CLUTCHWORK_INLINE wide slope_of(const Boxes& p, int n, int i) {
+  wide s = p.gradient[i];
+  const wide* row = p.mobility + i * n;
   for (int j = 0; j < n; ++j) s += row[j] * p.x[j];
   return s;
 }
@@ -30,13 +31,13 @@ CLUTCHWORK_INLINE double slope_of(const Boxes& p, int n, int i) {
 /// Factor of W + E of the m free contacts of the list, by rows of the length m. False: it is not positive definite.
 inline bool factor_free(const Boxes& p, int m) {
   for (int a = 0; a < m; ++a) {
-    const double* own = p.mobility + p.list[a] * p.n;
-    double* row = p.factor + a * m;
+    const wide* own = p.mobility + p.list[a] * p.n;
+    wide* row = p.factor + a * m;
     for (int b = 0; b <= a; ++b) {
-      const double* other = p.factor + b * m;
-      double s = own[p.list[b]] + (a == b ? p.weight[p.list[a]] : 0.0);
+      const wide* other = p.factor + b * m;
+      wide s = own[p.list[b]] + wide(a == b ? p.weight[p.list[a]] : real(0));
       for (int k = 0; k < b; ++k) s -= row[k] * other[k];
-      if (a == b && !(s > 0)) return false;
+      if (a == b && !(value(s) > 0)) return false;
       row[b] = a == b ? sqrt(s) : s / other[b];
     }
   }
@@ -45,14 +46,14 @@ inline bool factor_free(const Boxes& p, int m) {
 
 /// solved := -(W + E)^-1 solved of the free contacts.
 inline void solve_free(const Boxes& p, int m) {
-  double* y = p.solved;
+  wide* y = p.solved;
   for (int a = 0; a < m; ++a) {
-    double s = -y[a];
+    wide s = -y[a];
     for (int k = 0; k < a; ++k) s -= p.factor[a * m + k] * y[k];
     y[a] = s / p.factor[a * m + a];
   }
   for (int a = m - 1; a >= 0; --a) {
-    double s = y[a];
+    wide s = y[a];
     for (int k = a + 1; k < m; ++k) s -= p.factor[k * m + a] * y[k];
     y[a] = s / p.factor[a * m + a];
   }
@@ -69,7 +70,7 @@ CLUTCHWORK_INLINE int solve_set(const Boxes& p, int n) {
   int m = 0;
   for (int i = 0; i < n; ++i) {
     if (p.side[i] == 0) p.list[m++] = i;
-    p.x[i] = p.side[i] == 0 ? 0.0 : p.side[i] > 0 ? p.upper[i] : p.lower[i];
+    p.x[i] = p.side[i] == 0 ? real(0) : p.side[i] > 0 ? p.upper[i] : p.lower[i];
   }
   if (m == 0) return 0;
   if (!factor_free(p, m)) return -1;
@@ -80,18 +81,25 @@ CLUTCHWORK_INLINE int solve_set(const Boxes& p, int n) {
 
 /// Where contact i should be, seen from the present set; its present side where that is right. Finds its slope.
 CLUTCHWORK_INLINE int wanted_side(const Boxes& p, int n, int i) {
-  if (p.side[i] == 0) return p.x[i] < p.lower[i] ? -1 : p.x[i] > p.upper[i] ? 1 : 0;
-  const double* row = p.mobility + i * n;
-  double s = p.gradient[i], size = abs(s);
+  if (p.side[i] == 0) return real(p.x[i]) < p.lower[i] ? -1 : real(p.x[i]) > p.upper[i] ? 1 : 0;
+  const wide* row = p.mobility + i * n;
+  wide s = p.gradient[i];
+  real size = abs(p.gradient[i]);
   for (int j = 0; j < n; ++j) {
-    const double part = row[j] * p.x[j];
-    s += part, size += abs(part);
+    const wide part = row[j] * p.x[j];
+    s += part, size += abs(real(part));
   }
   p.slope[i] = s;
   if (!(p.lower[i] < p.upper[i])) return p.side[i];
   // what round-off makes of a slip decides nothing
-  const double slip = s + p.weight[i] * p.x[i];
-  return (p.side[i] > 0 ? slip : -slip) > 1e-14 * size ? 0 : p.side[i];
+  const wide slip = s + p.weight[i] * p.x[i];
+  return real(p.side[i] > 0 ? slip : -slip) > roundoff<real>(1e-14, 1e-12) * size ? 0 : p.side[i];
+}
+
+/// The number nearest to x that bounds allow.
+CLUTCHWORK_HOT double within(double x, double lower, double upper) { return smaller(larger(x, lower), upper); }
+CLUTCHWORK_HOT Twofold within(Twofold x, Single lower, Single upper) {
+  return value(x) < lower ? Twofold(lower) : value(x) > upper ? Twofold(upper) : x;
 }
 
 /// Take the weight out again: one step with the exact matrix, within the bounds.
@@ -99,7 +107,7 @@ CLUTCHWORK_INLINE void refine_once(const Boxes& p, int n, int m) {
   solve_list(p, n, m);
   for (int a = 0; a < m; ++a) {
     const int i = p.list[a];
-    p.x[i] = smaller(larger(p.x[i] + p.solved[a], p.lower[i]), p.upper[i]);
+    p.x[i] = within(p.x[i] + p.solved[a], p.lower[i], p.upper[i]);
   }
   for (int i = 0; i < n; ++i) p.slope[i] = slope_of(p, n, i);
 }

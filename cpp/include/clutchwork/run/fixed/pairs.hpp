@@ -1,12 +1,12 @@
 #pragma once
-#include <clutchwork/components/scalar.hpp>
+#include <clutchwork/components/single.hpp>
 
 /// Numbers two at a time, of which the compiler makes what the processor has: each has the bits that it has alone.
 namespace clutchwork::fixed {
 
 /// Whether few speeds and few contacts are compiled for each number of them, and numbers go in pairs; a build that must
-/// be small has one loop for all, to the same bits.
-#ifdef CLUTCHWORK_ONE_SIZE
+/// be small has one loop for all, to the same bits, and single numbers have no pairs.
+#if defined(CLUTCHWORK_ONE_SIZE) || defined(CLUTCHWORK_SINGLE)
 inline constexpr bool has_few_sizes = false;
 #else
 inline constexpr bool has_few_sizes = true;
@@ -27,12 +27,18 @@ struct __attribute__((packed)) Anywhere {
 
 /// V: one number, or two.
 template <class V>
-CLUTCHWORK_HOT V take(const double* from) {
-  return reinterpret_cast<const Anywhere<V>*>(from)->x;
+CLUTCHWORK_HOT V take(const real* from) {
+  if constexpr (std::is_same_v<V, Single>)
+    return *from;
+  else
+    return reinterpret_cast<const Anywhere<V>*>(from)->x;
 }
 template <class V>
-CLUTCHWORK_HOT void put(double* to, const V& x) {
-  reinterpret_cast<Anywhere<V>*>(to)->x = x;
+CLUTCHWORK_HOT void put(real* to, const V& x) {
+  if constexpr (std::is_same_v<V, Single>)
+    *to = x;
+  else
+    reinterpret_cast<Anywhere<V>*>(to)->x = x;
 }
 
 /// Calls f(i, V()) for all of n numbers and no other.
@@ -41,9 +47,9 @@ CLUTCHWORK_HOT void in_pairs_alone(int n, F&& f) {
   int i = 0;
   if constexpr (has_few_sizes) {
     for (; i + 2 <= n; i += 2) f(i, Two());
-    if (i < n) f(i, 0.0);
+    if (i < n) f(i, real());
   } else {
-    for (; i < n; ++i) f(i, 0.0);
+    for (; i < n; ++i) f(i, real());
   }
 }
 /// The same for whole arrays of a run, of which a pair may reach behind the last number.

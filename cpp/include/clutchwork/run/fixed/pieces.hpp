@@ -12,13 +12,13 @@ namespace clutchwork::fixed {
 inline constexpr int most_passed = 4;
 
 /// The piece of a switching branch at the present state; what round-off makes of a shaft at rest is no rate.
-inline void cross_branch(Run& ws, Branch<double>& b) {
-  PresentRates<double> rate(ws, b);
-  const double tolerance = slip_tolerance(ws);
+inline void cross_branch(Run& ws, Branch<real>& b) {
+  PresentRates<real> rate(ws, b);
+  const real tolerance = slip_tolerance(ws);
   for (int i = 0; i < b.ways; ++i) {
     if (abs(rate.at[i]) <= tolerance) rate.at[i] = 0;
   }
-  const double still[most_ways] = {};
+  const real still[most_ways] = {};
   int& heading = ws.heading[b.direction];
   b.piece = ws.piece[b.direction];
   const int now = rate.at[0] < 0 ? backward : forward;
@@ -40,7 +40,7 @@ inline void cross_branch(Run& ws, Branch<double>& b) {
 
 /// All of them behind a step.
 inline void cross_pieces(Run& ws) {
-  const System& sys = ws.sys;
+  const auto& sys = ws.sys;
   for (int k = 0; k < ws.fixed.plan.n_crossing; ++k) cross_branch(ws, ws.branch[ws.fixed.plan.crossing[k]]);
   if (sys.shared == 0) return;
   shared_inputs(ws, ws.state);

@@ -6,6 +6,7 @@
 #include <clutchwork/components/kinds.hpp>
 #include <clutchwork/components/pieces.hpp>
 #include <clutchwork/contacts/sticking.hpp>
+#include <clutchwork/contacts/stops.hpp>
 #include <clutchwork/motion/branches.hpp>
 #include <clutchwork/motion/shared.hpp>
 #include <clutchwork/run/fixed/load_rows.hpp>
@@ -41,7 +42,7 @@ inline bool has_teeth(int kind) {
 
 /// Why a direction is refused; `taken`: it is not.
 inline Refusal refusal_of(const Run& ws, int d) {
-  const System& sys = ws.sys;
+  const auto& sys = ws.sys;
   if (d < sys.elements) {
     const int kind = sys.element_kind[d];
     if (has_teeth(kind)) return Refusal::bristles;
@@ -54,7 +55,7 @@ inline Refusal refusal_of(const Run& ws, int d) {
 
 /// Whether fixed steps take all of a system; else `detail` tells what they do not, and why.
 inline bool takes(Run& ws) {
-  const System& sys = ws.sys;
+  const auto& sys = ws.sys;
   auto refuse = [&](int component, Refusal why) {
     ws.detail.component = component, ws.detail.value = double(int(why));
     return false;
@@ -63,6 +64,16 @@ inline bool takes(Run& ws) {
   for (int d = 0; d < ws.n_directions; ++d) {
     const Refusal why = refusal_of(ws, d);
     if (why != Refusal::taken) return refuse(d, why);
+  }
+  if constexpr (NumberOf<real>::single) {
+    // src/clutchwork/codegen/single.py says it by name
+    for (int c = 0; c < sys.contacts; ++c) {
+      if (is_stop(ws, c)) return refuse(int(sys.elements) + c, Refusal::single_stops);
+    }
+    if (sys.loads > 0) return refuse(int(sys.elements + sys.load_contact[0]), Refusal::single_loads);
+    for (std::int64_t k = 0; k < sys.segments; ++k) {
+      if (!is_zero(sys.segment_coef[segment_size * k + 4])) return refuse(-1, Refusal::single_waves);
+    }
   }
   return has_fixed_steps(sys) || refuse(-1, Refusal::many_speeds);
 }
@@ -85,13 +96,13 @@ inline bool is_steady(const Run& ws, int c) {
     using E = typename decltype(tag)::type;
     if constexpr (LoadedContact<E>)
       return E::steady(
-          *reinterpret_cast<const typename E::template Params<double>*>(ws.params + ws.sys.contact_param[c]));
+          *reinterpret_cast<const typename E::template Params<real>*>(ws.params + ws.sys.contact_param[c]));
     return true;
   });
 }
 
 /// What the contact of load l can hold over it, at a size of slip.
-inline void see_bound(Run& ws, int l, double size) {
+inline void see_bound(Run& ws, int l, real size) {
   const int c = int(ws.sys.load_contact[l]);
   const int piece = ws.branch[ws.sys.elements + c].piece;
   for (int way = 0; way < 2; ++way) ws.fixed.load_bound[2 * l + way] = bound_of(ws, c, 2 * way - 1, size, piece);
@@ -100,12 +111,12 @@ inline void see_bound(Run& ws, int l, double size) {
 /// Slopes of a linear torque, and what is left of it without rate and state. Whether it resists: what drives is taken
 /// explicitly.
 inline bool find_line(Run& ws, int d) {
-  Fixed<double>& f = ws.fixed;
-  const Branch<double>& b = ws.branch[d];
-  Line<double>& line = f.plan.line[d];
+  Fixed<real>& f = ws.fixed;
+  const Branch<real>& b = ws.branch[d];
+  Line<real>& line = f.plan.line[d];
   for (int i = 0; i < b.states; ++i) f.state_ahead[b.state + i] = 0;
-  const Partial<double> p =
-      branch_partial(ws, b, 0.0, 0.0, f.state_ahead, ws.observed.state_rates, state_partials(ws, d));
+  const Partial<real> p =
+      branch_partial(ws, b, real(0), real(0), f.state_ahead, ws.observed.state_rates, state_partials(ws, d));
   line = {p.torque, p.by_rate, 0, 0};
   if (b.states > 0) line.by_state = ws.jacobian.f_state[b.state], line.state_by_rate = ws.jacobian.g_rate[b.state];
   return line.by_rate <= 0 && line.by_state * line.state_by_rate <= 0;
@@ -113,11 +124,11 @@ inline bool find_line(Run& ws, int d) {
 
 /// What a step goes through.
 inline void make_plan(Run& ws) {
-  const System& sys = ws.sys;
-  FixedPlan<double>& p = ws.fixed.plan;
+  const auto& sys = ws.sys;
+  FixedPlan<real>& p = ws.fixed.plan;
   p.n_linear = p.n_bent = p.n_bounded = p.n_one_way = p.n_rigid = p.n_stops = p.n_crossing = 0;
   for (int d = 0; d < ws.n_directions; ++d) {
-    const Branch<double>& b = ws.branch[d];
+    const Branch<real>& b = ws.branch[d];
     p.smooth[d] = d < sys.elements || b.compliant;
     const bool linear = d < sys.elements && b.ways == 1 && is_linear(b.kind) && find_line(ws, d);
     if (linear) p.linear[p.n_linear++] = d;
@@ -142,7 +153,7 @@ inline void make_plan(Run& ws) {
 
 /// The branches of all directions, each at the place of its direction, and what they ask for in every step.
 inline void pack_all(Run& ws) {
-  Fixed<double>& f = ws.fixed;
+  Fixed<real>& f = ws.fixed;
   const int ne = int(ws.sys.elements);
   int block = 0;
   ws.n_rates = 0;
@@ -169,36 +180,49 @@ inline void pack_all(Run& ws) {
   f.ready = true;
 }
 
+/// Where the matrices are made: they are used for many steps, whose errors would add up.
+inline double* wide_of(double* own, const void*) { return own; }
+inline Twofold* wide_of(const Single*, Twofold* own) { return own; }
+/// What is kept of them.
+inline void keep_rounded(const double*, int, const double*) {}
+inline void keep_rounded(const Twofold* from, int n, Single* to) {
+  for (int i = 0; i < n; ++i) to[i] = from[i].high;
+}
+
 /// Factor of M - h/2 sum(slope d'd), the answers to the impulses of the contacts and their mobility.
 /// docs/theory/fixed-steps.md (5)
-inline bool factor_step(Run& ws, double h) {
-  const System& sys = ws.sys;
-  Fixed<double>& f = ws.fixed;
+inline bool factor_step(Run& ws, real h) {
+  const auto& sys = ws.sys;
+  Fixed<real>& f = ws.fixed;
   const int nv = int(sys.speeds), ne = int(sys.elements), nc = int(sys.contacts);
-  for (int i = 0; i < nv * nv; ++i) f.factor[i] = 0;
+  wide *factor = wide_of(f.factor, f.wide_factor), *answer = wide_of(f.answer, f.wide_answer);
+  wide* mobility = wide_of(f.mobility, f.wide_mobility);
+  for (int i = 0; i < nv * nv; ++i) factor[i] = 0;
   for (int i = 0; i < nv; ++i) {
     const auto row = mass_row(sys, i);
-    for (int k = 0; k < row.n && row.column[k] <= i; ++k) f.factor[i * nv + row.column[k]] = row.value[k];
+    for (int k = 0; k < row.n && row.column[k] <= i; ++k) factor[i * nv + row.column[k]] = row.value[k];
   }
   for (int d = 0; d < ws.n_directions; ++d) {
     if (f.kept[d] == 0) continue;
     const auto row = rate_row(sys, d);
     for (int a = 0; a < row.n; ++a) {
       for (int b = 0; b <= a; ++b)
-        f.factor[row.column[a] * nv + row.column[b]] -= 0.5 * h * f.kept[d] * row.value[a] * row.value[b];
+        factor[row.column[a] * nv + row.column[b]] -= wide(0.5 * h * f.kept[d]) * row.value[a] * row.value[b];
     }
   }
-  if (!cholesky(nv, f.factor, nv)) return false;
+  if (!cholesky(nv, factor, nv)) return false;
   for (int c = 0; c < nc; ++c) {
-    double* x = f.answer + c * nv;
+    wide* x = answer + c * nv;
     const auto row = rate_row(sys, ne + c);
     for (int i = 0; i < nv; ++i) x[i] = 0;
     for (int k = 0; k < row.n; ++k) x[row.column[k]] = row.value[k];
-    solve_step(nv, f.factor, x);
+    solve_step(nv, factor, x);
   }
   for (int c = 0; c < nc; ++c) {
-    for (int o = 0; o < nc; ++o) f.mobility[c * nc + o] = rate_row(sys, ne + c).times(f.answer + o * nv);
+    for (int o = 0; o < nc; ++o) mobility[c * nc + o] = rate_row(sys, ne + c).times(answer + o * nv);
   }
+  keep_rounded(factor, nv * nv, f.factor), keep_rounded(answer, nc * nv, f.answer);
+  keep_rounded(mobility, nc * nc, f.mobility);
   reach_loads(ws, h);
   f.length = h;
   ++ws.statistics.jacobians;

@@ -7,12 +7,25 @@
 /// Rates of all directions and speeds of all nodes from speeds: of few speeds by whole matrices, which need no indices.
 namespace clutchwork::fixed {
 
-using Run = Workspace<double>;
+using Run = Workspace<real>;
+
+/// x += change. Where numbers are single, what that loses is kept: docs/theory/fixed-steps.md (14)
+inline void add(double& x, const double*, int, double change) { x += change; }
+inline void add(Single& x, Single* low, int i, Single change) { add_to(x, low[i], change); }
+/// The same of number i of an array, and of the one behind it.
+template <class V>
+CLUTCHWORK_HOT void add_at(double* x, const double*, int i, const V& change) {
+  put(x + i, take<V>(x + i) + change);
+}
+template <class V>
+CLUTCHWORK_HOT void add_at(Single* x, Single* low, int i, const V& change) {
+  add_to(x[i], low[i], change);
+}
 
 /// y := M x, for n rows of N numbers that stand by columns, each as long as `column`.
 template <int N>
-CLUTCHWORK_INLINE void multiply_few(int n, int column, const double* matrix, const double* x, double* y) {
-  double at[N];
+CLUTCHWORK_INLINE void multiply_few(int n, int column, const real* matrix, const real* x, real* y) {
+  real at[N];
   for (int k = 0; k < N; ++k) at[k] = x[k];
   in_pairs(n, [&](int i, auto as) {
     using V = decltype(as);
@@ -23,8 +36,7 @@ CLUTCHWORK_INLINE void multiply_few(int n, int column, const double* matrix, con
 }
 /// The same for as many numbers as there are speeds; `sparse(i)` is a row where these are more than a few.
 template <class Row>
-CLUTCHWORK_INLINE void multiply(int nv, int n, int column, const double* matrix, Row&& sparse, const double* x,
-                                double* y) {
+CLUTCHWORK_INLINE void multiply(int nv, int n, int column, const real* matrix, Row&& sparse, const real* x, real* y) {
   static_assert(most_whole_speeds == 4);
   if constexpr (!has_few_sizes) {
     for (int i = 0; i < n; ++i) {
@@ -52,23 +64,24 @@ CLUTCHWORK_INLINE void multiply(int nv, int n, int column, const double* matrix,
 }
 
 /// x := (L L')^-1 x for a factor of N numbers a row.
-template <int N>
-CLUTCHWORK_INLINE void solve_few(const double* l, double* x) {
-  double at[N];
+template <int N, class T>
+CLUTCHWORK_INLINE void solve_few(const T* l, T* x) {
+  T at[N];
   for (int i = 0; i < N; ++i) {
-    double s = x[i];
+    T s = x[i];
     for (int k = 0; k < i; ++k) s -= l[i * N + k] * at[k];
     at[i] = s / l[i * N + i];
   }
   for (int i = N - 1; i >= 0; --i) {
-    double s = at[i];
+    T s = at[i];
     for (int k = i + 1; k < N; ++k) s -= l[k * N + i] * at[k];
     at[i] = s / l[i * N + i];
   }
   for (int i = 0; i < N; ++i) x[i] = at[i];
 }
 /// The same for as many numbers as there are speeds.
-inline void solve_step(int nv, const double* factor, double* x) {
+template <class T>
+inline void solve_step(int nv, const T* factor, T* x) {
   if constexpr (has_few_sizes) {
     static_assert(most_whole_speeds == 4);
     switch (nv) {
@@ -86,7 +99,7 @@ inline void solve_step(int nv, const double* factor, double* x) {
 }
 
 /// Rates of directions by speeds, without the prescribed ones: at least those from `first` on.
-CLUTCHWORK_INLINE void rates_by(const Run& ws, const double* speeds, double* rates, int first = 0) {
+CLUTCHWORK_INLINE void rates_by(const Run& ws, const real* speeds, real* rates, int first = 0) {
   const int nv = int(ws.sys.speeds);
   // pairs end where the arrays do
   first -= first % 2;
@@ -96,10 +109,10 @@ CLUTCHWORK_INLINE void rates_by(const Run& ws, const double* speeds, double* rat
 }
 
 /// x += factor times the row of direction d.
-CLUTCHWORK_INLINE void add_direction(const Run& ws, int d, double factor, double* x) {
+CLUTCHWORK_INLINE void add_direction(const Run& ws, int d, real factor, real* x) {
   const int nv = int(ws.sys.speeds);
   if (nv <= most_whole_speeds) {
-    const double* share = ws.fixed.rate_rows + d;
+    const real* share = ws.fixed.rate_rows + d;
     for (int k = 0; k < nv; ++k, share += ws.n_directions) x[k] += factor * *share;
     return;
   }
@@ -107,9 +120,24 @@ CLUTCHWORK_INLINE void add_direction(const Run& ws, int d, double factor, double
   for (int k = 0; k < row.n; ++k) x[row.column[k]] += factor * row.value[k];
 }
 
+/// Slips are small differences of speeds: where these are single, they are summed in two parts, with what the sums of
+/// the speeds have not taken yet.
+inline void sum_slips(const Workspace<double>&, double*) {}
+inline void sum_slips(const Workspace<Single>& ws, Single* rates) {
+  for (int d = int(ws.sys.elements); d < ws.n_directions; ++d) {
+    const auto row = rate_row(ws.sys, d);
+    Twofold slip;
+    for (int k = 0; k < row.n; ++k) {
+      const int i = row.column[k];
+      slip += Twofold::product(row.value[k].v, ws.v[i].v) + Twofold(row.value[k] * ws.fixed.speed_low[i]);
+    }
+    rates[d] = slip.high;
+  }
+}
+
 /// Speeds of all nodes, or what they gain.
-CLUTCHWORK_INLINE void nodes_by(const Run& ws, const double* speeds, const double* given, double* nodes) {
-  const System& sys = ws.sys;
+CLUTCHWORK_INLINE void nodes_by(const Run& ws, const real* speeds, const real* given, real* nodes) {
+  const auto& sys = ws.sys;
   multiply(
       int(sys.speeds), int(sys.nodes), int(sys.nodes), ws.fixed.node_rows, [&](int n) { return basis_row(sys, n); },
       speeds, nodes);
@@ -122,7 +150,7 @@ CLUTCHWORK_INLINE void nodes_by(const Run& ws, const double* speeds, const doubl
 inline void fill_rows(Run& ws) {
   const int nv = int(ws.sys.speeds);
   if (nv > most_whole_speeds) return;
-  auto fill = [&](double* whole, int column, const auto& row) {
+  auto fill = [&](real* whole, int column, const auto& row) {
     for (int k = 0; k < nv; ++k) whole[k * column] = 0;
     for (int k = 0; k < row.n; ++k) whole[row.column[k] * column] = row.value[k];
   };

@@ -13,10 +13,10 @@ namespace clutchwork::fixed {
 
 /// Speeds, states and rates that are expected in the middle of the step, from the last one; what round-off makes of a
 /// shaft at rest is no rate. docs/theory/fixed-steps.md (3)
-inline void predict(Run& ws, double h, double tolerance) {
-  const System& sys = ws.sys;
-  Fixed<double>& f = ws.fixed;
-  const double share = f.time == ws.time && f.before > 0 ? 0.5 * h / f.before : 0;
+inline void predict(Run& ws, real h, real tolerance) {
+  const auto& sys = ws.sys;
+  Fixed<real>& f = ws.fixed;
+  const real share = f.time == ws.time && f.before > 0 ? 0.5 * h / f.before : 0;
   in_pairs(int(sys.speeds), [&](int i, auto as) {
     using V = decltype(as);
     put(f.ahead + i, take<V>(ws.v + i) + share * take<V>(f.gain + i));
@@ -24,7 +24,7 @@ inline void predict(Run& ws, double h, double tolerance) {
   for (int i = 0; i < sys.states; ++i) f.state_ahead[i] = ws.state[i] + share * f.state_gain[i];
   // nobody reads those of elements where all are linear
   const int first = f.plan.n_bent + ws.in.n_rate_refs > 0 ? 0 : int(sys.elements);
-  rates_by(ws, f.ahead, f.predicted, first), rates_by(ws, ws.v, f.start_rate);
+  rates_by(ws, f.ahead, f.predicted, first), rates_by(ws, ws.v, f.start_rate), sum_slips(ws, f.start_rate);
   for (int d = 0; sys.prescribed > 0 && d < ws.n_directions; ++d) {
     for (int p = 0; p < sys.prescribed; ++p) {
       if (d >= first) f.predicted[d] += prescribed_share(ws, d, p) * ws.in.prescribed[p];
@@ -41,7 +41,7 @@ inline bool take_alone(Run& ws, double t) {
   const int i = ws.in.alone;
   if (i < 0 || !(ws.in.knot_behind > t) || ws.in.signal[i].varying || !is_held(ws, i)) return false;
   seek(ws, i, t);
-  const double held = ws.in.signal[i].held;
+  const real held = ws.in.signal[i].held;
   for (int ref = 0; ref < ws.in.n_refs; ++ref) {
     if (ws.in.ref_signal[ref] == i) ws.in.u[ref] = held, ws.in.du[ref] = 0;
   }
@@ -67,7 +67,7 @@ inline void see_middle(Run& ws) {
 
 /// What a step changes beside its results: segments of signals, faults and their events.
 inline void keep_outside(Run& ws) {
-  Fixed<double>& f = ws.fixed;
+  Fixed<real>& f = ws.fixed;
   for (int i = 0; i < ws.sys.inputs; ++i) f.segment[i] = ws.in.signal[i].segment;
   for (int c = 0; c < ws.sys.contacts; ++c) f.fault[c] = ws.contact.fault[c];
   f.failed = ws.contact.failed, f.events = ws.events.n, f.counted = ws.statistics.events;
@@ -80,7 +80,7 @@ inline void rewind_signals(Run& ws) {
 }
 /// All of it: the step that was made is none.
 inline void rewind(Run& ws) {
-  Fixed<double>& f = ws.fixed;
+  Fixed<real>& f = ws.fixed;
   for (int c = 0; c < ws.sys.contacts; ++c) ws.contact.fault[c] = f.fault[c];
   ws.contact.failed = f.failed, ws.events.n = f.events, ws.statistics.events = f.counted;
   rewind_signals(ws);
@@ -96,7 +96,7 @@ inline void see_faults(Run& ws) {
 
 /// Prescribed speeds at the end of the step.
 inline void follow_prescribed(Run& ws, double t) {
-  Fixed<double>& f = ws.fixed;
+  Fixed<real>& f = ws.fixed;
   if (ws.in.next_knot < t) load_inputs(ws, t);
   for (int p = 0; p < ws.sys.prescribed; ++p)
     f.given_change[p] = signal_value(ws, int(ws.sys.prescribed_input[p]), t) - f.given[p];
@@ -104,11 +104,11 @@ inline void follow_prescribed(Run& ws, double t) {
 
 /// The change of the speeds without the impulses of contacts, and the slips at the end with it.
 /// docs/theory/fixed-steps.md (5)
-inline void move_freely(Run& ws, double h) {
-  const System& sys = ws.sys;
-  Fixed<double>& f = ws.fixed;
+inline void move_freely(Run& ws, real h) {
+  const auto& sys = ws.sys;
+  Fixed<real>& f = ws.fixed;
   const int nv = int(sys.speeds), np = int(sys.prescribed), ne = int(sys.elements), nc = int(sys.contacts);
-  double* x = f.change;
+  real* x = f.change;
   for (int i = 0; i < nv; ++i) {
     x[i] = 0;
     for (int p = 0; p < np; ++p) x[i] -= sys.mass_prescribed[i * np + p] * f.given_change[p];
@@ -132,12 +132,12 @@ inline void move_freely(Run& ws, double h) {
 
 /// Speeds without inertia follow torques at once, of which a step knows those in its middle: they go on from the
 /// middles of two steps, and rates with them. docs/theory/fixed-steps.md, rule 5
-inline void settle_massless(Run& ws, double h) {
-  const System& sys = ws.sys;
-  Fixed<double>& f = ws.fixed;
+inline void settle_massless(Run& ws, real h) {
+  const auto& sys = ws.sys;
+  Fixed<real>& f = ws.fixed;
   for (int i = 0; i < sys.speeds; ++i) {
     if (sys.massless[i] == 0) continue;
-    const double middle = 0.5 * f.change[i], last = -0.5 * f.gain[i];
+    const real middle = 0.5 * f.change[i], last = -0.5 * f.gain[i];
     f.change[i] = middle + h / (h + f.before) * (middle - last);
   }
   for (int d = 0; d < ws.n_directions; ++d) {
@@ -148,9 +148,9 @@ inline void settle_massless(Run& ws, double h) {
 }
 
 /// Speeds, torques and states with the impulses.
-inline void move(Run& ws, double h) {
-  const System& sys = ws.sys;
-  Fixed<double>& f = ws.fixed;
+inline void move(Run& ws, real h) {
+  const auto& sys = ws.sys;
+  Fixed<real>& f = ws.fixed;
   const int nv = int(sys.speeds), ne = int(sys.elements), nc = int(sys.contacts);
   for (int c = 0; c < nc; ++c) {
     in_pairs(nv, [&](int i, auto as) {
@@ -177,12 +177,12 @@ inline void move(Run& ws, double h) {
 }
 
 /// Contacts that only join prescribed shafts: their torque moves nothing. False: a freewheel is turned backward.
-inline bool hold_rigid(Run& ws, double h, double tolerance) {
-  Fixed<double>& f = ws.fixed;
+inline bool hold_rigid(Run& ws, real h, real tolerance) {
+  Fixed<real>& f = ws.fixed;
   for (int k = 0; k < f.plan.n_rigid; ++k) {
     const int c = f.plan.rigid[k];
     if (!ws.contact.loaded[c] || ws.loads.of[c] >= 0) continue;
-    const double slip = f.end_slip[c];
+    const real slip = f.end_slip[c];
     if (free_way(ws, c) * slip < -1e3 * tolerance) return ws.detail.component = int(ws.sys.elements) + c, false;
     if (abs(slip) > tolerance && free_way(ws, c) * slip <= 0)
       f.impulse[c] = slip > 0 ? -h * f.kinetic[2 * c + 1] : h * f.kinetic[2 * c];
@@ -194,17 +194,17 @@ inline bool hold_rigid(Run& ws, double h, double tolerance) {
 inline bool are_known(Run& ws) {
   for (int k = 0; k < ws.fixed.plan.n_bounded; ++k) {
     const int c = ws.fixed.plan.bounded[k];
-    double seen = 0;
+    real seen = 0;
     if (!ws.contact.loaded[c] || table_room(ws, c, ws.fixed.end_slip[c], seen) >= 0) continue;
-    ws.detail.component = int(ws.sys.elements) + c, ws.detail.value = seen;
+    ws.detail.component = int(ws.sys.elements) + c, ws.detail.value = double(seen);
     return false;
   }
   return true;
 }
 
 /// Freewheels that hold no more give way for good: whether there are any. docs/theory/contacts.md, rule 3
-inline bool gives_way(Run& ws, double tolerance) {
-  const Fixed<double>& f = ws.fixed;
+inline bool gives_way(Run& ws, real tolerance) {
+  const Fixed<real>& f = ws.fixed;
   bool any = false;
   for (int k = 0; k < f.plan.n_one_way; ++k) {
     const int c = f.plan.one_way[k];
@@ -217,10 +217,10 @@ inline bool gives_way(Run& ws, double tolerance) {
 }
 
 /// Everything of one step but its taking over, again without each freewheel that gives way. `running`: it is there.
-inline Status make_step(Run& ws, const double t, const double h, const double end) {
-  Fixed<double>& f = ws.fixed;
-  const double tolerance = slip_tolerance(ws);
-  read_signals(ws, t + 0.5 * h);
+inline Status make_step(Run& ws, const double t, const real h, const double end) {
+  Fixed<real>& f = ws.fixed;
+  const real tolerance = slip_tolerance(ws);
+  read_signals(ws, t + 0.5 * double(h));
   predict(ws, h, tolerance);
   see_middle(ws);
   if (ws.guard.n_faulty > 0) see_faults(ws);
@@ -240,7 +240,7 @@ inline Status make_step(Run& ws, const double t, const double h, const double en
   move(ws, h);
   if (!are_known(ws)) return Status::out_of_table;
   for (int c = 0; c < ws.sys.contacts; ++c) f.mode[c] = mode_behind(ws, c, tolerance);
-  double sum = 0;
+  real sum = 0;
   for (int i = 0; i < ws.sys.speeds; ++i) sum += f.change[i] * 0;
   for (int i = 0; i < ws.sys.states; ++i) sum += f.state_change[i] * 0;
   return sum == 0 ? Status::running : Status::not_finite;
@@ -248,29 +248,29 @@ inline Status make_step(Run& ws, const double t, const double h, const double en
 
 /// The step is taken: speeds, states, angles, work and history.
 CLUTCHWORK_INLINE void take_over(Run& ws, const Look& look) {
-  const System& sys = ws.sys;
-  Fixed<double>& f = ws.fixed;
+  const auto& sys = ws.sys;
+  Fixed<real>& f = ws.fixed;
   if (ws.options.work) {
     in_pairs(ws.n_directions, [&](int d, auto as) {
-      using V = decltype(as);
-      put(ws.work + d, take<V>(ws.work + d) + direction_energy<V>(ws, look, 1.0, d));
+      add_at(ws.work, f.energy_low, d, direction_energy<decltype(as)>(ws, look, 1.0, d));
     });
     if (sys.prescribed + sys.supplies + sys.meters > 0)
-      other_energies_until(ws, look, 1.0, [&](int i, double energy) { work_of(ws, i) += energy; });
+      other_energies_until(ws, look, 1.0, [&](int i, real energy) { add(work_of(ws, i), f.energy_low, i, energy); });
   }
-  auto gain = [](int n, const double* change, double* now, double* gained) {
+  auto gain = [](int n, const real* change, real* now, real* low, real* gained) {
     in_pairs(n, [&](int i, auto as) {
       const auto x = take<decltype(as)>(change + i);
-      put(now + i, take<decltype(as)>(now + i) + x), put(gained + i, x);
+      add_at(now, low, i, x), put(gained + i, x);
     });
   };
-  gain(int(sys.speeds), f.change, ws.v, f.gain), gain(int(sys.states), f.state_change, ws.state, f.state_gain);
+  gain(int(sys.speeds), f.change, ws.v, f.speed_low, f.gain);
+  gain(int(sys.states), f.state_change, ws.state, f.state_low, f.state_gain);
   for (int p = 0; p < sys.prescribed; ++p) f.given[p] += f.given_change[p], f.given_gain[p] = f.given_change[p];
   if (ws.options.angles) {
     see_nodes(ws, look);
     in_pairs(int(sys.nodes), [&](int n, auto as) {
       using V = decltype(as);
-      put(ws.angle + n, take<V>(ws.angle + n) + look.h * (take<V>(f.node_end + n) - 0.5 * take<V>(f.node_gain + n)));
+      add_at(ws.angle, f.angle_low, n, look.h * (take<V>(f.node_end + n) - 0.5 * take<V>(f.node_gain + n)));
     });
   }
   f.before = look.h;
@@ -286,20 +286,20 @@ inline Cause cause_of(const Run& ws, int c, int from) {
 
 /// Report the contacts that have changed, in the order of their instants, and give them their modes.
 [[gnu::noinline]] inline void report_changes(Run& ws, const Look& look, double end) {
-  Fixed<double>& f = ws.fixed;
+  Fixed<real>& f = ws.fixed;
   const int ne = int(ws.sys.elements), nc = int(ws.sys.contacts);
   int n = 0;
   for (int c = 0; c < nc; ++c) {
     if (f.mode[c] == ws.contact.mode[c]) continue;
     const bool was_locked = ws.contact.mode[c] == locked;
-    const double s = was_locked ? larger(0.0, f.box[c] == slips_on ? f.share[c] : 0) : share_at_zero(ws, c, look.h);
-    f.instant[c] = smaller(look.t + s * look.h, end);
+    const real s = was_locked ? larger(0.0, f.box[c] == slips_on ? f.share[c] : 0) : share_at_zero(ws, c, look.h);
+    f.instant[c] = smaller(look.t + double(s * look.h), end);
     int at = n++;
     for (; at > 0 && f.instant[f.list[at - 1]] > f.instant[c]; --at) f.list[at] = f.list[at - 1];
     f.list[at] = c;
   }
   inputs_at(ws, end);
-  const double energy = kinetic_energy(ws);
+  const real energy = kinetic_energy(ws);
   for (int k = 0; k < n; ++k) {
     const int c = f.list[k], from = ws.contact.mode[c], to = f.mode[c];
     ws.contact.mode[c] = to;
@@ -307,8 +307,9 @@ inline Cause cause_of(const Run& ws, int c, int from) {
     // what was open and slips now without a load tells nothing
     if (from == open && to != locked) continue;
     ws.time = f.instant[c];
-    const double acceleration = f.rate_change[ne + c] / look.h;
-    record(ws, {c, from, to, cause_of(ws, c, from), acceleration, f.torque[ne + c], f.mean[ne + c], energy, energy});
+    const real acceleration = f.rate_change[ne + c] / look.h;
+    record(ws, {c, from, to, cause_of(ws, c, from), double(acceleration), double(f.torque[ne + c]),
+                double(f.mean[ne + c]), double(energy), double(energy)});
   }
 }
 
