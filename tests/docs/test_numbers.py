@@ -15,6 +15,7 @@ CORE = " ".join(
 
 # words of the page, lines of the core
 CONTACTS = {
+    "within $10^{-12}$ of that step": "inline constexpr double at_once = 1e-12;",
     "limited to $20 n + 50$ steps": "round < 20 * p.n + 50",
     r"R_{cc} = 10^{-10} \, G_{cc}": "double small = 1e-10",
     r"\min\!\left( \frac{T_{\max}}{T_c}, 10^6 \right)": "ratio < 1e6 ? ratio : 1e6",

@@ -459,3 +459,10 @@ def test_a_new_object_is_not_what_stood_in_its_memory() -> None:
         made = new.of(cw.Damper("damper", base=a, follower=b, damping=1.0 + number))
         assert made.base.inertia == 2.0
         assert made.damping == 1.0 + number
+
+
+def test_a_point_below_all_numbers_is_refused_alone_too() -> None:
+    d = cw.Driveline("d")
+    d.add(cw.SpeedTorque("t", shaft=d.shaft("a", inertia=1.0), torque=[[0.0, float("-inf")]]))
+    with pytest.raises(cw.ModelError, match="torque"):
+        d.assemble()

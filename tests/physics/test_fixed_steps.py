@@ -387,3 +387,28 @@ def test_a_contact_between_steps_is_that_of_the_last_one() -> None:
     sim.set("brake.torque", 0.1)
     assert (sim["c.state"], sim["c.slip"], sim["disc.speed"]) == before
     assert before[0] == "backward"
+
+
+@pytest.mark.parametrize("how", ["knots", "set", "set with another"])
+def test_what_is_read_in_the_middle_of_a_step_does_not_ask_where_other_signals_have_knots(how: str) -> None:
+    """An accumulator that is fed by a ramp, beside a torque with knots in the second half of steps."""
+
+    def pressures(knots: bool) -> list[float]:
+        d = cw.Driveline("beside")
+        a = d.shaft("a", inertia=1.0)
+        points = [(0.0, 1.0), (0.0058, 1.0), (0.01, 2.0)]
+        d.add(cw.Torque("t", shaft=a, torque=cw.Table(points) if knots else 1.0))
+        d.add(cw.Torque("other", shaft=a, torque=0.0))
+        inflow = cw.Table([(0.0, 0.0), (0.02, 2e-5)])
+        d.add(cw.Accumulator("acc", precharge=5e5, capacity=2e-4, inflow=inflow))
+        sim = cw.Simulator(d, method="fixed", step=1e-3)
+        sim.advance(1e-3)
+        if how != "knots":
+            sim.set({"t.torque": 5.0} if how == "set" else {"t.torque": 5.0, "other.torque": 1.0})
+        found = []
+        for _ in range(12):
+            sim.advance(1e-3)
+            found.append(sim["acc.pressure"])
+        return found
+
+    assert pressures(knots=True) == pressures(knots=False)

@@ -170,6 +170,7 @@ inline Status what_is_spent(const Run& ws, const Sink& sink) {
 inline Status finish_step(Run& ws, real h, double end, Sink& sink) {
   Fixed<real>& f = ws.fixed;
   const Look look{ws.time, h, f.change, f.given_change, f.state_change, f.mean};
+  if (ws.in.next_knot < end) load_inputs(ws, end);
   Status shown = emit_inside(ws, look, end, sink);
   if (shown != Status::running) return shown;
   take_over(ws, look);

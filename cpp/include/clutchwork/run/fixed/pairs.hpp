@@ -11,7 +11,9 @@ inline constexpr bool has_few_sizes = false;
 #else
 inline constexpr bool has_few_sizes = true;
 #endif
-/// Whether an odd last number may go with its neighbour: arrays of a run end at whole pairs, which its fences forbid.
+/// Whether an odd last number may go with its neighbour: arrays of a run end at whole pairs. Behind a part of an array,
+/// such as a column, the neighbour is the first number of the next part; what is made of it goes into the padding of
+/// the result. Fences between arrays forbid it.
 #ifdef __SANITIZE_ADDRESS__
 inline constexpr bool has_whole_pairs = false;
 #else
@@ -21,7 +23,7 @@ inline constexpr bool has_whole_pairs = has_few_sizes;
 typedef double Two __attribute__((vector_size(16)));
 /// V, wherever a number may stand.
 template <class V>
-struct __attribute__((packed)) Anywhere {
+struct __attribute__((packed, may_alias)) Anywhere {
   V x;
 };
 

@@ -44,7 +44,7 @@ CLUTCHWORK_INLINE void multiply(int nv, int n, int column, const real* matrix, R
         y[i] = sparse(i).times(x);
         continue;
       }
-      y[i] = matrix[i] * x[0];
+      y[i] = nv > 0 ? matrix[i] * x[0] : real(0);
       for (int k = 1; k < nv; ++k) y[i] += matrix[k * column + i] * x[k];
     }
     return;

@@ -46,6 +46,10 @@ inline bool take_alone(Run& ws, double t) {
     if (ws.in.ref_signal[ref] == i) ws.in.u[ref] = held, ws.in.du[ref] = 0;
   }
   ws.in.next_knot = ws.in.knot_behind, ws.in.alone = -1;
+  if (ws.sys.input_count[i] == 0) return true;
+  // its own knots count no more
+  ws.in.next_knot = infinity;
+  for (int k = 0; k < ws.sys.inputs; ++k) ws.in.next_knot = smaller(ws.in.next_knot, double(ws.in.signal[k].knot));
   return true;
 }
 
@@ -94,12 +98,17 @@ inline void see_faults(Run& ws) {
   }
 }
 
-/// Prescribed speeds at the end of the step.
+/// Prescribed speeds at the end of the step; everything else still reads its middle.
 inline void follow_prescribed(Run& ws, double t) {
   Fixed<real>& f = ws.fixed;
-  if (ws.in.next_knot < t) load_inputs(ws, t);
-  for (int p = 0; p < ws.sys.prescribed; ++p)
-    f.given_change[p] = signal_value(ws, int(ws.sys.prescribed_input[p]), t) - f.given[p];
+  for (int p = 0; p < ws.sys.prescribed; ++p) {
+    const int i = int(ws.sys.prescribed_input[p]);
+    auto& signal = ws.in.signal[i];
+    const auto present = signal;
+    if (signal.knot < t) seek(ws, i, t);
+    f.given_change[p] = signal_value(ws, i, t) - f.given[p];
+    signal = present;
+  }
 }
 
 /// The change of the speeds without the impulses of contacts, and the slips at the end with it.
