@@ -174,18 +174,11 @@ inline bool slides_on(Run& ws) {
   return true;
 }
 
-/// Impulses of all contacts, for slips at the end without them in `gradient`. False: they were not found.
-inline bool find_impulses(Run& ws, real h, real tolerance) {
+/// At which bound each contact may be, and its little mobility of rule 1; how many are at none.
+CLUTCHWORK_INLINE int guess_sides(Run& ws) {
   Fixed<real>& f = ws.fixed;
-  const int nc = int(ws.sys.contacts), rounds = ws.sys.loads > 0 ? most_loaded_rounds : most_rounds;
+  const int nc = int(ws.sys.contacts);
   real largest = 0;
-  for (int c = 0; c < nc; ++c) {
-    f.box[c] = ws.contact.mode[c] == locked || ws.contact.mode[c] == open ? at_rest : sliding;
-    set_box(ws, c, h);
-  }
-  const bool found = ws.sys.loads > 0 && slip_with_load(ws, h);
-  if ((found || ws.sys.loads == 0) && f.plan.n_rigid == 0 && slides_on(ws)) return true;
-  if (ws.sys.loads > 0 && !found) begin_loads(ws, h);
   int free = 0;
   for (int c = 0; c < nc; ++c) {
     const int mode = ws.contact.mode[c];
@@ -200,21 +193,47 @@ inline bool find_impulses(Run& ws, real h, real tolerance) {
     const real ratio = own > 0 && own < largest ? smaller(largest / own, 1e6) : 1;
     f.weight[c] = 1e-10 * f.mobility[c * nc + c] * ratio;
   }
-  const Boxes boxes{nc,
-                    wide_of(f.mobility, f.wide_mobility),
-                    f.gradient,
-                    f.lower,
-                    f.upper,
-                    f.weight,
-                    wide_of(f.impulse, f.wide_impulse),
-                    wide_of(f.end_slip, f.wide_slip),
-                    f.side,
-                    wide_of(f.solved, f.wide_solved),
-                    wide_of(f.free_factor, f.wide_free),
-                    f.list};
+  return free;
+}
+
+/// Impulses of contacts that are all at a bound.
+CLUTCHWORK_INLINE void take_sides(Fixed<real>& f, int nc) {
+  for (int c = 0; c < nc; ++c) f.impulse[c] = f.side[c] < 0 ? f.lower[c] : f.upper[c];
+}
+
+/// The problem of all contacts.
+CLUTCHWORK_INLINE Boxes boxes_of(Run& ws) {
+  Fixed<real>& f = ws.fixed;
+  return {int(ws.sys.contacts),
+          wide_of(f.mobility, f.wide_mobility),
+          f.gradient,
+          f.lower,
+          f.upper,
+          f.weight,
+          wide_of(f.impulse, f.wide_impulse),
+          wide_of(f.end_slip, f.wide_slip),
+          f.side,
+          wide_of(f.solved, f.wide_solved),
+          wide_of(f.free_factor, f.wide_free),
+          f.list};
+}
+
+/// Impulses of all contacts, for slips at the end without them in `gradient`. False: they were not found.
+inline bool find_impulses(Run& ws, real h, real tolerance) {
+  Fixed<real>& f = ws.fixed;
+  const int nc = int(ws.sys.contacts), rounds = ws.sys.loads > 0 ? most_loaded_rounds : most_rounds;
+  for (int c = 0; c < nc; ++c) {
+    f.box[c] = ws.contact.mode[c] == locked || ws.contact.mode[c] == open ? at_rest : sliding;
+    set_box(ws, c, h);
+  }
+  const bool found = ws.sys.loads > 0 && slip_with_load(ws, h);
+  if ((found || ws.sys.loads == 0) && f.plan.n_rigid == 0 && slides_on(ws)) return true;
+  if (ws.sys.loads > 0 && !found) begin_loads(ws, h);
+  const int free = guess_sides(ws);
+  const Boxes boxes = boxes_of(ws);
   // where all contacts slip, bounds follow their loads before the first solution
   if (ws.sys.loads > 1 && free == 0 && f.plan.n_rigid == 0) {
-    for (int c = 0; c < nc; ++c) f.impulse[c] = f.side[c] < 0 ? f.lower[c] : f.upper[c];
+    take_sides(f, nc);
     follow_loads(ws, boxes, h, tolerance);
   }
   for (int round = 0; round < rounds; ++round) {
