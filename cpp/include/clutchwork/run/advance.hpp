@@ -267,7 +267,6 @@ Status advance_by_events(Workspace<T>& ws, double t_end, Sink& sink, bool to_eve
 template <class T>
 Status advance_fixed(Workspace<T>& ws, double t_end, Sink& sink, bool to_event);
 
-#ifdef CLUTCHWORK_SINGLE
 /// What sums of steps of single precision have not taken yet joins them: in double both parts are one number.
 inline void join_parts(Workspace<double>& ws) {
   auto& f = ws.fixed;
@@ -280,7 +279,6 @@ inline void join_parts(Workspace<double>& ws) {
   join(ws.work, n.directions, f.energy_low), join(ws.prescribed_work, n.prescribed, low);
   join(ws.supplied, n.supplies, low + n.prescribed), join(ws.metered, n.meters, low + n.prescribed + n.supplies);
 }
-#endif
 
 /// Integrate to t_end by the method that is wanted; `to_event`: no farther than the first event, or the end of the step
 /// of one length in which it is.

@@ -48,7 +48,7 @@ void place_input(Workspace<T>& ws, int i, double value, double slope) {
   }
 #ifdef CLUTCHWORK_SINGLE
   // steps have signals of their own, which are to take it
-  ws.in.next_knot = -infinity;
+  if (ws.options.method == Method::fixed) ws.in.next_knot = -infinity;
 #endif
 }
 
