@@ -288,6 +288,17 @@ def test_nothing_is_computed_with_doubles(built: Path) -> None:
     assert [name for name in single if not IN_DOUBLE.search(name)] == []
 
 
+@pytest.mark.skipif(not shutil.which("nm"), reason="needs binutils")
+def test_its_readme_names_what_it_needs_of_a_c_library(built: Path) -> None:
+    command = ["nm", built / "build" / "libclutchwork.a"]
+    text = subprocess.run(command, capture_output=True, text=True, check=True).stdout
+    words = [line.split() for line in text.splitlines() if line.strip() and not line.endswith(":")]
+    asked = {one[-1] for one in words if one[-2] == "U"} - {one[-1] for one in words if one[-2] != "U"}
+    needed = {name for name in asked if not name.startswith("_")}
+    assert "fmodf" in needed
+    assert needed <= set(re.findall(r"\w+", (built / "README.md").read_text())) | {"ceil", "trunc", "ceilf", "truncf"}
+
+
 def test_what_single_precision_refuses(tmp_path: Path) -> None:
     """By name, all at once."""
     d = cw.Driveline("refused")

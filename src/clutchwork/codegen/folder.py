@@ -33,14 +33,14 @@ USE = """\
     make SMALL=1   # the least code, with the same numbers""".splitlines()
 NEEDS = """\
 No call allocates on the heap, throws, or writes anywhere but into the memory that it is given. It needs memcpy,
-memmove, memset, memcmp and strcmp, floor, fmod, sqrt and nearbyint, {more}and nothing else of a C library.
+memmove, memset, memcmp and strcmp, floor, fmod, sqrt and nearbyint, and nothing else of a C library.
 
 The core is compiled with what this model uses alone: `core/include/clutchwork/parts.gen.hpp`. Another export into this
 folder compiles it again only where its model uses other parts.
 
 `model.h` has every input, signal and parameter by name, with unit and bounds; `model_set_param` refuses what is out of
 bounds or fixed. `core/include/clutchwork/c_api.h` says what each call does.""".splitlines()
-OF_SINGLES = "those for floats, floorf, fmodf, sqrtf and nearbyintf, "
+NEEDS_OF_SINGLES = ("", "Its steps, of single precision, need floorf, fmodf, sqrtf and nearbyintf as well.")
 FILE = "parts.gen.hpp"
 # arrays with the kinds of each role
 KINDS = {
@@ -127,8 +127,9 @@ def readme(model: Exported, memory: int) -> Iterator[str]:
     yield f"| memory of a run | {memory} bytes |"
     yield f"| numbers in a row | {len(model.columns)} |"
     yield f"| inputs, parameters | {len(model.system.inputs)}, {len(model.settable)} |"
-    more = OF_SINGLES if model.single else ""
-    yield from ("", *(line.replace("{more}", more) for line in NEEDS))
+    yield from ("", *NEEDS)
+    if model.single:
+        yield from NEEDS_OF_SINGLES
 
 
 def parts(system: System, whole: bool, single: bool = False) -> Iterator[str]:
