@@ -212,6 +212,10 @@ int cw_set_segments(cw_run* run, std::int64_t input, const double* times, const 
   }
   for (std::int64_t k = 0; k < segment_size * n; ++k) {
     if (!is_finite(coefficients[k])) return 0;
+#ifdef CLUTCHWORK_SINGLE
+    // its steps refuse waves
+    if (k % segment_size % 4 == 0 && k % segment_size > 0 && coefficients[k] != 0) return 0;
+#endif
   }
   auto same = [](const double* a, const double* b, std::int64_t m) {
     return std::memcmp(a, b, std::size_t(8 * m)) == 0;

@@ -40,6 +40,7 @@ folder compiles it again only where its model uses other parts.
 
 `model.h` has every input, signal and parameter by name, with unit and bounds; `model_set_param` refuses what is out of
 bounds or fixed. `core/include/clutchwork/c_api.h` says what each call does.""".splitlines()
+NEEDS_OF_SINGLES = ("", "Its steps, of single precision, need floorf, fmodf, sqrtf and nearbyintf as well.")
 FILE = "parts.gen.hpp"
 # arrays with the kinds of each role
 KINDS = {
@@ -127,6 +128,8 @@ def readme(model: Exported, memory: int) -> Iterator[str]:
     yield f"| numbers in a row | {len(model.columns)} |"
     yield f"| inputs, parameters | {len(model.system.inputs)}, {len(model.settable)} |"
     yield from ("", *NEEDS)
+    if model.single:
+        yield from NEEDS_OF_SINGLES
 
 
 def parts(system: System, whole: bool, single: bool = False) -> Iterator[str]:

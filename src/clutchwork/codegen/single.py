@@ -40,6 +40,9 @@ def _refused(system: System, options: Options) -> Iterator[str]:
         if contacts:
             names = ", ".join(quote(system.contacts[c].name) for c in contacts)
             yield f"{names}: {WHY[why]}"
+    if len(arrays["prescribed_input"]):
+        names = ", ".join(quote(system.inputs[i]) for i in arrays["prescribed_input"].tolist())
+        yield f"signal {names}: {WHY['single_prescribed']}"
     waves = arrays["segment_coef"].reshape(-1, 12)[:, WAVE] != 0.0
     for name, first, count in zip(system.inputs, arrays["input_first"], arrays["input_count"], strict=True):
         if waves[first : first + count].any():

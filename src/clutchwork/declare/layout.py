@@ -219,6 +219,7 @@ REFUSALS = {
     8: ("single_stops", "an impact of a stop needs double precision"),
     9: ("single_loads", "friction that follows a load needs double precision"),
     10: ("single_waves", "a sine over a long time needs double precision"),
+    11: ("single_prescribed", "a prescribed speed needs double precision"),
 }
 
 # what a run counts, in order: (name, meaning)

@@ -267,6 +267,19 @@ Status advance_by_events(Workspace<T>& ws, double t_end, Sink& sink, bool to_eve
 template <class T>
 Status advance_fixed(Workspace<T>& ws, double t_end, Sink& sink, bool to_event);
 
+/// What sums of steps of single precision have not taken yet joins them: in double both parts are one number.
+inline void join_parts(Workspace<double>& ws) {
+  auto& f = ws.fixed;
+  auto join = [](double* sum, std::int64_t n, double* low) {
+    for (std::int64_t i = 0; i < n; ++i) sum[i] += low[i], low[i] = 0;
+  };
+  const Sizes n(ws.sys);
+  double* low = f.energy_low + n.directions;
+  join(ws.v, n.speeds, f.speed_low), join(ws.state, n.states, f.state_low), join(ws.angle, n.nodes, f.angle_low);
+  join(ws.work, n.directions, f.energy_low), join(ws.prescribed_work, n.prescribed, low);
+  join(ws.supplied, n.supplies, low + n.prescribed), join(ws.metered, n.meters, low + n.prescribed + n.supplies);
+}
+
 /// Integrate to t_end by the method that is wanted; `to_event`: no farther than the first event, or the end of the step
 /// of one length in which it is.
 template <class T>
@@ -274,6 +287,9 @@ Status advance(Workspace<T>& ws, double t_end, Sink& sink, bool to_event = false
   // other scalars, which tests compute with, have no steps of one length
   if constexpr (std::is_same_v<T, double>) {
     if (ws.options.method == Method::fixed) return advance_fixed(ws, t_end, sink, to_event);
+#ifdef CLUTCHWORK_SINGLE
+    if (ws.started && ws.fixed.time == ws.time) join_parts(ws);
+#endif
     // what fixed steps have left is decided anew
     if (ws.started && ws.fixed.time == ws.time) ws.params_changed = true, ws.fixed.time = -infinity;
   }

@@ -88,7 +88,10 @@ void fail(Workspace<T>& ws, int c) {
   // a freewheel that gave way transmits nothing more
   if (kind == sound) kind = cannot_transmit;
   ws.contact.fault[c] = kind;
-  const double e = double(kinetic_energy(ws)), torque = double(value(ws.event_context.torque[c]));
+  const double e = double(kinetic_energy(ws));
+  double torque = double(value(ws.event_context.torque[c]));
+  // which the run behind its steps has alone
+  if constexpr (NumberOf<T>::single) torque = double(ws.fixed.torque[ws.sys.elements + c]);
   record(ws, {c, ws.contact.mode[c], ws.contact.mode[c], Cause::fault, 0.0, torque, torque, e, e});
   if (report == int(choice::Report::error)) ws.contact.failed = c;
   if (kind == cannot_transmit) ws.contact.loaded[c] = ws.contact.pressed[c] = 0;

@@ -46,6 +46,10 @@ void place_input(Workspace<T>& ws, int i, double value, double slope) {
   for (int ref = 0; ref < ws.in.n_refs; ++ref) {
     if (ws.in.ref_signal[ref] == i) ws.in.u[ref] = value, ws.in.du[ref] = slope;
   }
+#ifdef CLUTCHWORK_SINGLE
+  // steps have signals of their own, which are to take it
+  if (ws.options.method == Method::fixed) ws.in.next_knot = -infinity;
+#endif
 }
 
 /// Take time and state; signals stay on their segments.

@@ -105,6 +105,7 @@ inline double start_torque(const Workspace<double>& ws, int c) { return torque_a
 inline Status decide_start(Workspace<Single>& ws, Sink& sink) {
   Workspace<double>& outer = *ws.moved.outer;
   outer.params_changed = ws.params_changed;
+  join_parts(outer);
   const Status status = decide_start(outer, sink);
   const Sizes n(ws.sys);
   carry_state(outer, ws), take_whole(outer, ws);
@@ -115,7 +116,7 @@ inline Status decide_start(Workspace<Single>& ws, Sink& sink) {
   split(outer.prescribed_work, n.prescribed, ws.prescribed_work, low);
   split(outer.supplied, n.supplies, ws.supplied, low + n.prescribed);
   split(outer.metered, n.meters, ws.metered, low + n.prescribed + n.supplies);
-  ws.params_changed = false;
+  ws.params_changed = outer.params_changed;
   if (ws.started) load_inputs(ws, ws.time);
   return status;
 }

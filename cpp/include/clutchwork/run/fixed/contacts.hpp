@@ -251,6 +251,18 @@ inline bool find_impulses(Run& ws, real h, real tolerance) {
   return ws.sys.loads == 0 || f.load_miss < 1e-3;
 }
 
+/// Whether the slip of a contact that ends at a bound is none: what a load of round-off holds, or, in single precision,
+/// round-off of the sum that the slip is.
+CLUTCHWORK_INLINE bool is_slip_of_noise(const Run& ws, int c, real tolerance) {
+  const Fixed<real>& f = ws.fixed;
+  if constexpr (!NumberOf<real>::single) return ws.sys.loads > 0 && abs(f.end_slip[c]) <= tolerance;
+  const int nc = int(ws.sys.contacts);
+  real size = abs(f.gradient[c]);
+  for (int o = 0; o < nc; ++o) size += abs(f.mobility[c * nc + o] * f.impulse[o]);
+  // some units of its last place
+  return abs(f.end_slip[c]) <= real(0x1p-21) * size;
+}
+
 /// Mode of a contact behind the step.
 inline int mode_behind(const Run& ws, int c, real tolerance) {
   const Fixed<real>& f = ws.fixed;
@@ -263,9 +275,7 @@ inline int mode_behind(const Run& ws, int c, real tolerance) {
     if (abs(slip) > tolerance) return slip > 0 ? forward : backward;
     return ws.contact.loaded[c] ? locked : mode == locked ? open : mode;
   }
-  // at rest, what a load of round-off holds is no slip, nor are a few units of a single
-  const bool rough = NumberOf<real>::single || ws.sys.loads > 0;
-  if (f.side[c] == 0 || (rough && abs(slip) <= tolerance)) return locked;
+  if (f.side[c] == 0 || is_slip_of_noise(ws, c, tolerance)) return locked;
   return f.lower[c] < f.upper[c] ? -f.side[c] : slip > 0 ? forward : backward;
 }
 

@@ -71,6 +71,7 @@ inline bool takes(Run& ws) {
       if (is_stop(ws, c)) return refuse(int(sys.elements) + c, Refusal::single_stops);
     }
     if (sys.loads > 0) return refuse(int(sys.elements + sys.load_contact[0]), Refusal::single_loads);
+    if (sys.prescribed > 0) return refuse(-1, Refusal::single_prescribed);
     for (std::int64_t k = 0; k < sys.segments; ++k) {
       if (!is_zero(sys.segment_coef[segment_size * k + 4])) return refuse(-1, Refusal::single_waves);
     }

@@ -2,11 +2,14 @@
 #include <clutchwork/run/advance.hpp>
 #include <clutchwork/run/fixed/products.hpp>
 
+#include <limits>
 #include <new>
 
 /// A run of single precision beside the one in double that the caller holds: its steps are taken here, everything else
 /// there. Between calls both are the same, to the last bit. docs/theory/fixed-steps.md
 namespace clutchwork::fixed {
+
+static_assert(sizeof(double) == 8 && std::numeric_limits<float>::is_iec559);
 
 /// The numbers of a model and of its curves as singles; returns the size that they need.
 inline std::int64_t lay_numbers(Workspace<Single>& ws, const System& from, unsigned char* memory) {
@@ -86,9 +89,20 @@ void carry_history(const Fixed<A>& from, Fixed<B>& to, const Sizes& n) {
   carry(from.energy_low, n.directions + n.prescribed + n.supplies + n.meters, to.energy_low);
 }
 
-/// Signals as they were set; they are read at the next step.
+/// Where signal i stands: on the same segment.
+template <class A, class B>
+void carry_cursor(const Workspace<A>& from, Workspace<B>& to, int i) {
+  const auto& there = from.in.signal[i];
+  auto& here = to.in.signal[i];
+  here.segment = there.segment, here.start = there.start, here.knot = there.knot;
+  here.varying = there.varying, here.linear = there.linear, here.idle = there.idle, here.fresh = there.fresh;
+  here.coef = nullptr;
+  if (there.coef != nullptr) here.coef = segments_of(to, i).coef + (there.coef - segments_of(from, i).coef);
+}
+
+/// Signals as they were set, where they stand, with the values that they had before.
 inline void take_signals(const Workspace<double>& outer, Workspace<Single>& ws) {
-  for (std::int64_t i = 0; i < ws.sys.inputs; ++i) {
+  for (int i = 0; i < ws.sys.inputs; ++i) {
     const Signal& from = outer.in.signal[i];
     SignalOf<Single>& to = ws.in.signal[i];
     to = SignalOf<Single>{};
@@ -97,7 +111,26 @@ inline void take_signals(const Workspace<double>& outer, Workspace<Single>& ws) 
     const std::int64_t first = segment_size * ws.sys.input_first[i];
     carry(outer.in.set_coef + first, segment_size * from.set, ws.in.set_coef + first);
   }
-  ws.in.next_knot = -infinity;
+  ws.in.next_knot = outer.in.next_knot, ws.in.alone = -1, ws.in.time = -infinity;
+  if (!ws.started) return;
+  load_inputs(ws, ws.time);
+  for (int i = 0; i < ws.sys.inputs; ++i) carry_cursor(outer, ws, i);
+  ws.in.n_varying = outer.in.n_varying, carry(outer.in.varying, outer.in.n_varying, ws.in.varying);
+  carry(outer.in.u, ws.in.n_refs, ws.in.u), carry(outer.in.du, ws.in.n_refs, ws.in.du);
+  ws.in.next_knot = outer.in.next_knot, ws.in.time = -infinity;
+}
+
+/// Signals of the run in double stand where steps have left them.
+inline void move_signals(const Workspace<Single>& ws, Workspace<double>& outer) {
+  load_inputs(outer, outer.time);
+  for (int i = 0; i < ws.sys.inputs; ++i) carry_cursor(ws, outer, i);
+  outer.in.n_varying = 0;
+  for (int ref = 0; ref < outer.in.n_refs; ++ref) {
+    const int i = outer.in.ref_signal[ref];
+    if (i >= ws.sys.inputs) continue;
+    outer.in.u[ref] = signal_value(outer, i, outer.time), outer.in.du[ref] = signal_slope(outer, i, outer.time);
+    if (outer.in.signal[i].varying) outer.in.varying[outer.in.n_varying++] = ref;
+  }
 }
 
 /// What stays over the steps.
@@ -136,21 +169,21 @@ inline Workspace<Single>& take_down(Workspace<double>& outer) {
   if (anew) take_whole(outer, ws);
   if (outer.params_changed) carry(outer.params, ws.sys.n_params, ws.params);
   ws.params_changed = ws.params_changed || outer.params_changed, outer.params_changed = false;
-  if (outer.in.next_knot == -infinity) take_signals(outer, ws);
+  if (!anew && outer.in.next_knot == -infinity) take_signals(outer, ws);
   return ws;
 }
 
-/// And back; its signals are read again where they have gone on, or were set.
+/// And back; its signals go where they have gone on, or were set and read.
 inline void take_up(const Workspace<Single>& ws, Workspace<double>& outer) {
   carry_state(ws, outer), carry_history(ws.fixed, outer.fixed, Sizes(ws.sys));
   outer.params_changed = ws.params_changed;
-  bool anew = outer.in.next_knot == -infinity;
+  bool moved = outer.in.next_knot == -infinity && ws.in.next_knot > -infinity;
   for (std::int64_t i = 0; i < ws.sys.inputs; ++i) {
-    Signal& to = outer.in.signal[i];
-    anew = anew || to.segment != ws.in.signal[i].segment;
-    to.segment = ws.in.signal[i].segment;
+    const Signal& from = outer.in.signal[i];
+    const SignalOf<Single>& to = ws.in.signal[i];
+    moved = moved || from.segment != to.segment || from.idle != to.idle;
   }
-  if (anew && outer.started) load_inputs(outer, outer.time);
+  if (moved && outer.started) move_signals(ws, outer);
   outer.in.time = -infinity, outer.in.next_knot = ws.in.next_knot, outer.in.alone = -1;
   outer.fixed.ready = ws.started;
 }

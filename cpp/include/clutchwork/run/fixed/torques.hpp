@@ -9,6 +9,10 @@ namespace clutchwork::fixed {
 /// Part of a step at which a state is taken whose own rate is z over the step: a half where it is slow, so that energy
 /// is kept, and as much more as an exponential needs. docs/theory/fixed-steps.md (10)
 inline real share_of(real z) {
+  if constexpr (NumberOf<real>::single) {
+    // the first terms, where what follows loses all that it has
+    if (z > -0.3) return z < 0 ? 0.5 - z / 12 + z * z * z / 720 : real(0.5);
+  }
   if (!(z < -1e-3)) return 0.5;
   return z < -40 ? 1 + 1 / z : 1 / z + 1 / (1 - exp(z));
 }
