@@ -18,7 +18,7 @@ void describe(W& ws, A& a) {
   visit_options(ws.options, [&](auto& setting, const char*, const OptionRange& range) { a.setting(setting, range); });
   each_statistic(ws.statistics, [&](auto& count) { a.whole(count, 0, most); });
 
-  a.time(ws.time), a.number(ws.last_step, 0, 1e300), a.number(ws.settling);
+  a.time(ws.time), a.number(ws.last_step, 0, 1e300);
   a.whole(ws.started, 0, 1), a.whole(ws.fresh_phase, 0, 1), a.whole(ws.params_changed, 0, 1);
   a.whole(ws.stiffened, 0, 1), a.whole(ws.guard.strained, 0, 1 << 30);
   a.whole(ws.reduced.method, 1, last_method), a.number(ws.events.crowd_time), a.number(ws.contact.forced_time),

@@ -326,7 +326,7 @@ def test_a_loop_of_rigid_gears_with_losses_is_named():
 ENDLESS = pytest.mark.xfail(strict=True, raises=cw.StoppedEarly, reason="ends as zeno")
 
 
-@pytest.mark.parametrize("seed", [pytest.param(n, marks=ENDLESS) if n == 20 else n for n in range(40)])
+@pytest.mark.parametrize("seed", [pytest.param(n, marks=ENDLESS) if n in (20, 33) else n for n in range(40)])
 def test_gears_in_series_without_friction_of_their_own(seed):
     """At rest together they hold any load or none: runs end, and every row is finite."""
     rng = np.random.default_rng(seed)

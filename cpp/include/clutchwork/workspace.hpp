@@ -45,7 +45,6 @@ struct Workspace {
   // the state of the run
   double time = 0;
   double last_step = 0;  ///< [s] last step that was not cut short
-  double settling = 0;   ///< [s] steps up to this length may begin with a fast motion that they do not show
   bool started = false, fresh_phase = true;
   bool stiffened = false;   ///< the phase goes on with another method
   bool linearized = false;  ///< the derivatives are those where the run stands, since the end of the last call

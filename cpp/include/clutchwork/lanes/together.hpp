@@ -113,7 +113,6 @@ class Together {
   void leave(int i) {
     active_[i] = false;
     ws_.run[i] = nullptr;
-    step_.settles.set(i, false);
     --n_active_;
   }
 
@@ -146,7 +145,6 @@ class Together {
       if (!active_[i]) continue;
       one.plan_step();
       step_.t[i] = one.ws_.time, step_.h[i] = one.reach_;
-      step_.settles.set(i, one.ws_.settling > 0);
     }
     if (changed) list_varying(ws_);
   }

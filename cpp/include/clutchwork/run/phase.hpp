@@ -156,7 +156,7 @@ class Phase : public StepSize<typename Form::Scalar> {
 
   double first_length(bool event) {
     // kept, so that a run takes the same steps whether or not it is asked for a row here
-    if (event) ws_.last_step *= calls_.restart, ws_.settling = infinity;
+    if (event) ws_.last_step *= calls_.restart;
     return ws_.last_step > 0 ? ws_.last_step : first_step(taken_form(), taken_step(), t_end_ - ws_.time);
   }
 
@@ -229,7 +229,6 @@ class Phase : public StepSize<typename Form::Scalar> {
 
   /// The same where the phase goes on behind an event.
   CLUTCHWORK_INLINE void linearize_behind_event() {
-    ws_.settling = infinity;
     if constexpr (has_tangents<T>) {
       if (leave_event(form_, step_)) balance_massless(form_, step_);
     }
@@ -284,7 +283,6 @@ class Phase : public StepSize<typename Form::Scalar> {
     tells_all(form_) ? note_start(form_) : note_before(form_, step_, 0.0);
     if (knots_crowd(ws_)) return leave(Status::zeno);
     const bool jumps = (!Form::small || sink_.steps > 0) && any_jumps(ws_);
-    ws_.settling = infinity;
     if (knot_decides(ws_)) return decide(Cause::input);
     if constexpr (!Form::small) {
       if (jumps && balance_massless(form_, step_)) export_state(form_, step_.y0());
@@ -314,7 +312,7 @@ class Phase : public StepSize<typename Form::Scalar> {
   /// One step. False: rejected, or the run cannot go on.
   CLUTCHWORK_INLINE bool take_step() {
     plan_step();
-    step_.t = ws_.time, step_.settles = ws_.settling > 0;
+    step_.t = ws_.time;
     const double error = advance();
     if (!judge(error, all_finite(form_.n(), taken_step().y1()))) return false;
     if constexpr (Form::full) {

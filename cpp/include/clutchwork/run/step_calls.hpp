@@ -50,10 +50,6 @@ struct SizedCalls {
     sized.t = step.t;
     const Real<T> error = Integrator::advance(form, sized, h);
     step.h = sized.h, step.dense = sized.dense;
-    // it is rare, and compiled once
-    if constexpr (Integrator::stiff) {
-      if (step.settles && error < infinity) return Integrator::with_hidden_anew(any, step, error);
-    }
     return error;
   }
   [[gnu::noinline]] static void fit(Any& any, Step<Any>& step) {

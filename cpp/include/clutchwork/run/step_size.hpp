@@ -70,7 +70,6 @@ struct StepSize {
   /// A shorter step. False: it is too short.
   CLUTCHWORK_INLINE bool shorten() {
     ++ws_.statistics.rejected;
-    if (ws_.settling > 0) ws_.settling = reach_;
     h_ = rounded_step(reach_ * (error_ < 1e300 ? larger(0.2, 0.9 * pow(error_, -0.2)) : 0.1));
     rejected_ = true;
     before_ = 0;
@@ -93,9 +92,6 @@ struct StepSize {
     rejected_ = false;
     before_ = 0, landings_ = 0;
     ws_.last_step = h_;
-    // one that was cut short says nothing of the next one
-    if (ws_.settling == infinity) ws_.settling = cut_ ? larger(h_, reach_) : 0;
-    if (reach_ >= ws_.settling) ws_.settling = 0;
   }
 };
 

@@ -40,7 +40,6 @@ struct Step {
   using T = typename Form::Scalar;
   StepRows<T, Form::fixed_size> rows;
   Real<T> t = 0, h = 0;
-  Truth<T> settles{false};                 ///< what is fast may not have settled where it begins
   bool dense = false;                      ///< it has an interpolant
   const StepCalls<Form>* calls = nullptr;  ///< of its phase
 

@@ -15,8 +15,6 @@ struct Rodas5P {
   static constexpr bool stiff = true;
   static constexpr double restart = 0.25;
   static constexpr int most_small_states = small_states;
-  // of the tolerance: a fast motion that a step may hide, and what its error then is
-  static constexpr double most_hidden = 1, much_missed = 1e3;
   static constexpr double gamma = 0.21193756319429014;
   static constexpr double a[6][5] = {
       {0},
@@ -226,48 +224,7 @@ struct Rodas5P {
     }
     form.ws.statistics.evaluations += count_where(regular, 7);
     for (int i = 0; i < n; ++i) step.y1()[i] = u[i] + step.k(7)[i];
-    Real<T> error = error_norm(form, step.k(7), y0, step.y1());
-    // those of one size look behind it
-    if constexpr (Form::fixed_size == 0) {
-      if (!none(step.settles)) error = with_hidden(form, step, error);
-    }
-    return select(regular, error, Real<T>(infinity));
-  }
-
-  /// b := (scale M - J)^-1 (b + factor M x).
-  template <class Form, class T = typename Form::Scalar>
-  [[gnu::noinline]] static void solve_with(Form& form, T factor, const T* x, T* b) {
-    form.add_mass_times(factor, x, b);
-    for (int i = form.nz(); i < form.n(); ++i) b[i] += factor * x[i];
-    solve(form, b);
-  }
-
-  /// The error of a step, with what its interpolant hides of a fast motion right behind its start: its slope there is
-  /// not that of the motion, and the matrix of the stages tells how far that goes. docs/theory/integrators.md (18)
-  template <class Form, class T = typename Form::Scalar>
-  [[gnu::noinline]] static Real<T> with_hidden(Form& form, Step<Form>& step, Real<T> error) {
-    const int n = form.n();
-    T *hidden = step.point(), *slow = step.u();
-    for (int i = 0; i < n; ++i) {
-      T p0 = T(0);
-      for (int s = 0; s < 8; ++s) p0 += Real<T>(dense[0][s]) * step.k(s)[i];
-      slow[i] = (step.y0()[i] - step.y1()[i] - p0) / step.h;
-      hidden[i] = step.f0()[i];
-    }
-    solve_with(form, T(1), slow, hidden);
-    // what is no faster than the step has an error of its own, and goes out
-    for (int i = 0; i < n; ++i) slow[i] = T(0);
-    solve_with(form, T(Real<T>(1) / (Real<T>(gamma) * step.h)), hidden, slow);
-    for (int i = 0; i < n; ++i) hidden[i] -= slow[i];
-    const Real<T> size = error_norm(form, hidden, step.y0(), step.y1());
-    return select(step.settles && size > Real<T>(most_hidden), larger(error, Real<T>(much_missed)), error);
-  }
-
-  /// The same in a form that has no factor of its own.
-  template <class Form, class T = typename Form::Scalar>
-  [[gnu::noinline]] static Real<T> with_hidden_anew(Form& form, Step<Form>& step, Real<T> error) {
-    factor(form, T(Real<T>(1) / (Real<T>(gamma) * step.h)));
-    return with_hidden(form, step, error);
+    return select(regular, error_norm(form, step.k(7), y0, step.y1()), Real<T>(infinity));
   }
 
   /// Coefficients of the quartic.
