@@ -456,9 +456,10 @@ def test_a_torque_falls_far_faster_than_the_instant_of_its_peak_moves() -> None:
     want = derivatives(d, 0.145, cw.peak(of), by).matrix
     assert derivatives(d, 0.145, cw.peak(of), by, **alone).matrix == pytest.approx(want, rel=1e-4)
     d.add(cw.Torque("spin", shaft=d.shaft("z", inertia=1e-5), torque=100.0))
-    # six times as large before it was known to be rough
+    # six times as large before it was known to be rough; what the last run misses is said
     found = derivatives(d, 0.145, cw.peak(of), by, **alone)
-    assert found.matrix == pytest.approx(want, rel=1e-3)
+    assert found.matrix == pytest.approx(want, rel=1e-2)
+    assert any("fewer digits" in note for note in found.notes)
 
 
 def test_teeth_that_touch_bend_the_jerk() -> None:
