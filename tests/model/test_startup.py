@@ -29,7 +29,16 @@ HELP = IMPORT | {
     *("base.extras", "base.paths", "base.progress", "base.shell", "base.writing"),
     *("command", "command.check", "command.completion", "command.main", "command.models", "command.new"),
     *("command.plot", "command.progress", "command.reference", "command.run"),
-    *("declare.options", "declare.purposes", "declare.setting", "diagrams.kinds", "run", "run.flags", "sweeps.asking"),
+    *(
+        "codegen.precision",
+        "declare.options",
+        "declare.purposes",
+        "declare.setting",
+        "diagrams.kinds",
+        "run",
+        "run.flags",
+        "sweeps.asking",
+    ),
     *ROOMS,
     *(f"{room}.command" for room in ROOMS),
 }

@@ -9,7 +9,7 @@ from pathlib import Path
 from typing import Any
 
 from clutchwork.base import shell
-from clutchwork.codegen.single import PRECISIONS
+from clutchwork.codegen.precision import PRECISIONS
 from clutchwork.declare.options import OPTIONS
 from clutchwork.declare.wording import words_of_files
 from clutchwork.run.flags import DEFAULTS, add_options, given_options

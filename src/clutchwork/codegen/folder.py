@@ -12,7 +12,8 @@ from clutchwork.base.paths import fitting
 from clutchwork.base.paths import folder as made_folder
 from clutchwork.base.writing import put
 from clutchwork.codegen.model import Exported, chosen, files
-from clutchwork.codegen.single import is_single, refuse
+from clutchwork.codegen.precision import is_single
+from clutchwork.codegen.single import refuse
 from clutchwork.codegen.sources import GENERATED, sources
 from clutchwork.declare.calls import explained
 from clutchwork.declare.options import Options

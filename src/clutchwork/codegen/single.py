@@ -11,17 +11,9 @@ from clutchwork.base import quote
 from clutchwork.declare.layout import REFUSALS
 from clutchwork.declare.options import Options
 
-PRECISIONS = ("double", "single")
 # first number of the waves among those of a segment
 WAVE = 4
 WHY = dict(REFUSALS.values())
-
-
-def is_single(precision: str) -> bool:
-    """Whether numbers of steps are single; anything but the words is refused."""
-    if precision not in PRECISIONS:
-        raise ValueError(f"precision is {quote(precision)}: give {' or '.join(map(quote, PRECISIONS))}")
-    return precision == "single"
 
 
 def refuse(system: System, options: Options) -> None:
