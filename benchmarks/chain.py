@@ -8,7 +8,7 @@ from math import log2
 from time import process_time
 
 import clutchwork as cw
-from benchmarks.core import EMPTY, Prepared
+from benchmarks.core import EMPTY, Prepared, place
 from benchmarks.report import Row
 from benchmarks.timing import cpu
 from support import many_contacts
@@ -79,11 +79,11 @@ def change(n: int, repeats: int) -> float:
     prepared = Prepared(system, 1.0)
     prepared.reset()
     prepared.go()
-    place = system.parameters["c0.gain"]
+    number = place(system, "c0.gain")
 
     def ask() -> None:
         for _ in range(10):
-            prepared.run.set_param(place, 1.0)
+            prepared.run.set_param(number, 1.0)
             prepared.run.advance(1.0, EMPTY, prepared.rows, 0, False)
 
     return cpu(ask, repeats) / 10

@@ -52,3 +52,9 @@ class Prepared:
         self.reset()
         self.go()
         return dict(self.run.statistics())
+
+
+def place(system: Any, name: str) -> int:
+    """Where the core finds the number that a parameter is."""
+    (found,) = system.parameters[name].reach["params"].tolist()
+    return int(found)

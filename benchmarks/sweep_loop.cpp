@@ -34,7 +34,7 @@ int main(int argc, char** argv) {
     for (long v; (v = next.fetch_add(1)) < variants;) {
       cw_run* run = cw_load(system.data(), bytes, memory.get(), size);
       cw_set_option(run, "angles", work), cw_set_option(run, "work", work);
-      cw_set_param(run, offset, first + (last - first) * double(v) / double(variants - 1));
+      if (!cw_set_param(run, offset, first + (last - first) * double(v) / double(variants - 1))) std::exit(3);
       row.resize(std::size_t(cw_row_size(run)));
       double end = t_end;
       std::int64_t filled = 0;

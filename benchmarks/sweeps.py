@@ -12,6 +12,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 import clutchwork as cw
+from benchmarks.core import place
 from benchmarks.peers.by_c import core_objects
 from benchmarks.report import Row
 from benchmarks.timing import ratio, rounds, wall
@@ -59,8 +60,8 @@ def loop(folder: Path, system: cw.System, variants: int) -> Callable[[int], Take
     data.write_bytes(system.to_bytes())
 
     def run(threads: int) -> Taken:
-        place = str(system.parameters[NAME])
-        arguments = [str(data), place, str(FIRST), str(LAST), str(variants), str(threads), str(T_END), "0"]
+        number = str(place(system, NAME))
+        arguments = [str(data), number, str(FIRST), str(LAST), str(variants), str(threads), str(T_END), "0"]
         text = subprocess.run([str(program), *arguments], capture_output=True, text=True, check=True).stdout
         return Taken(*map(float, text.split()[:2]))
 

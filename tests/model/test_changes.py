@@ -288,6 +288,40 @@ def test_where_a_stop_is_at_the_start(stop):
 
 
 @pytest.mark.random
+def test_speeds_at_the_start_that_were_not_given():
+    """They are refused where assembling refuses them, and answer on straight lines in all Systems of the same model."""
+
+    def check(seed: int) -> str:
+        d = random_drivelines.describe(seed).driveline()
+        rng = np.random.default_rng(seed)
+        names = [f"{node.name}.speed" for node in d.nodes]
+        some = rng.choice(names, min(len(names), int(rng.integers(1, 3))), replace=False).tolist()
+        return compared(d, {name: float(rng.uniform(-50.0, 50.0)) for name in some})
+
+    sweep(check, amount(40))
+
+
+def test_a_speed_at_the_start_is_not_assembled_anew(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Shafts follow a gear; one of which an element makes more, such as a flyweight's force, is looked at as a whole."""
+    d = cw.Driveline("pair")
+    a, b, drum = d.shaft("a", inertia=1.0), d.shaft("b", inertia=2.0), d.shaft("drum", inertia=1.0)
+    d.add(cw.Gear("g", input=a, output=b, ratio=-3.0))
+    system = d.assemble()
+    system.changed({"b.speed": 1.0})
+    with monkeypatch.context() as patch:
+        patch.setattr(quick_changes, "anew", None)
+        made = system.changed({"b.speed": 2.0})
+    assert system.basis @ made.initial_speed == pytest.approx([-6.0, 2.0, 0.0])
+    assert next(node.speed for node in made.nodes if node.name == "b") == 2.0
+    law = cw.Coulomb(static=0.3, kinetic=0.3)
+    size = {"mass": 0.1, "radius": 0.05, "drum_radius": 0.06, "onset": 100.0}
+    d.add(cw.CentrifugalClutch("weights", base=b, follower=drum, friction=law, **size))
+    assert compared(d, {"b.speed": 200.0}) == ""
+    with pytest.raises(cw.ModelError, match="contradicts"):
+        system.changed({"b.speed": 1.0, "a.speed": 1.0})
+
+
+@pytest.mark.random
 def test_six_speed_gearbox():
     def check(seed: int) -> str:
         d = six_speed.gearbox(six_speed.SHIFT)

@@ -23,6 +23,7 @@ from clutchwork.assembly.patches import (
     signal_patches,
 )
 from clutchwork.assembly.records import Array
+from clutchwork.assembly.start_speeds import start_speeds
 from clutchwork.assembly.system_data import GROUPS, LATER, MAKES, SystemData
 from clutchwork.base.errors import ModelError, Problem, warn
 from clutchwork.base.memoize import memoize
@@ -71,12 +72,12 @@ def _with(system: S, found: Quick) -> S:
     for name in LATER:
         getattr(system, name)
     vars(system).pop(MAKES, None)
-    data, starts, before = bytearray(system.to_bytes()), system.starts, system.arrays
+    data, starts, own_arrays = bytearray(system.to_bytes()), system.starts, cast(Any, system.arrays).copy()
     for name, array in found.arrays.items():
-        if array is not before[name]:
-            array.flags.writeable = False
-            data[starts[name] : starts[name] + array.nbytes] = array.tobytes()
-    made, arrays = object.__new__(type(system)), MappingProxyType(found.arrays)
+        array.flags.writeable = False
+        data[starts[name] : starts[name] + array.nbytes] = array.data.cast("B")
+        own_arrays[name] = array
+    made, arrays = object.__new__(type(system)), MappingProxyType(own_arrays)
     own, kind = vars(system), cast(Any, type(system))
     vars(made).update({name: own[name] for name in _kept_names(kind)})
     numbers = system.numbered._replace(arrays=arrays)
@@ -120,13 +121,13 @@ Values = list[tuple[tuple[str, ...], Any]]
 
 
 class Quick(NamedTuple):
-    """Other numbers that nothing else depends on: the arrays, and what is new of all that stands in a System."""
+    """Other numbers that nothing else depends on: new arrays, and what is new of all that stands in a System."""
 
-    arrays: dict[str, Array]
+    arrays: dict[str, Array]  # those that differ
     aims: list[tuple[Target, Any]]
     values: dict[str, Values]  # of elements
     signals: dict[int, Signal]  # by the number of their input
-    inertias: Mapping[str, float]  # of shafts and masses
+    nodes: Mapping[str, Mapping[str, Any]]  # fields of shafts and masses by their names
 
     def made(self, old: SystemData, name: str) -> dict[str, Any]:
         """The item of a changed System with this name, and the items that are made together with it."""
@@ -136,7 +137,7 @@ class Quick(NamedTuple):
 
     def content(self, old: SystemData) -> dict[str, Any]:
         """Everything of a System that holds them."""
-        nodes = {id(node): replace(node, inertia=self.inertias[node.name]) for node in old.nodes if self._moves(node)}
+        nodes = {id(node): replace(node, **own) for node in old.nodes if (own := self.nodes.get(node.name))}
         new = Renewed(nodes)
         made = {name: tuple(map(partial(self._part, new), getattr(old, name))) for name in GROUPS}
         gears = tuple(replace(row, gear=new.of(row.gear)) for row in old.gears) if nodes else old.gears
@@ -145,13 +146,10 @@ class Quick(NamedTuple):
             inputs[number] = replace(inputs[number], signal=signal)
         return {**made, "nodes": tuple(map(new.of, old.nodes)), "gears": gears, "inputs": tuple(inputs)}
 
-    def _moves(self, node: Node) -> bool:
-        return node.name in self.inertias
-
     def _part(self, new: Renewed, part: Component) -> Any:
         """An element with other values, on the shafts of the System, which are not those of its source."""
         own = renewed(part, self.values[part.name]) if part.name in self.values else part
-        return new.of(own) if self.inertias else own
+        return new.of(own) if self.nodes else own
 
 
 @memoize
@@ -240,18 +238,17 @@ def quick(system: SystemData, changes: Mapping[str, Any]) -> Quick | None:
     where = system.numbered
     given: dict[str, tuple[Component, Values]] = {}
     aims: list[tuple[Target, Any]] = []
-    inertias: dict[str, float] = {}
+    of_nodes: dict[str, dict[str, Any]] = {"inertia": {}, "speed": {}}
     for name, value in changes.items():
         aim, kept = _aim(system, name) if isinstance(name, str) else None, _kept(value)
-        if aim is not None and isinstance(aim.owner, Node) and aim.path == ("inertia",):
-            inertias[name] = kept
+        if aim is not None and isinstance(aim.owner, Node) and aim.path[0] in of_nodes:
+            of_nodes[aim.path[0]][name] = kept
         elif aim is not None and isinstance(aim.owner, Component) and aim.owner.name not in where.referred:
             given.setdefault(aim.owner.name, (aim.owner, []))[1].append((aim.path, kept))
         else:
             return None
         aims.append((aim, kept))
-    known = masses(system) if inertias else None
-    found = [] if not inertias else None if known is None else known.patches(inertias)
+    found = _of_nodes(system, **of_nodes)
     new = None if found is None else _right(given)
     if found is None or new is None:
         return None
@@ -263,8 +260,29 @@ def quick(system: SystemData, changes: Mapping[str, Any]) -> Quick | None:
     except Unpatched:
         return None
     values = {name: own for name, (_, own) in given.items()}
-    moved = {name.rpartition(".")[0]: float(value) for name, value in inertias.items()}
-    return Quick(patched(where.arrays, found), aims, values, signals, moved)
+    nodes: dict[str, dict[str, Any]] = {}
+    for field, own in of_nodes.items():
+        for name, value in own.items():
+            nodes.setdefault(name.rpartition(".")[0], {})[field] = float(value)
+    return Quick(patched(where.arrays, found), aims, values, signals, nodes)
+
+
+def _of_nodes(system: SystemData, inertia: Mapping[str, Any], speed: Mapping[str, Any]) -> list[Patch] | None:
+    """The words of other inertias and speeds at the start; None where more follows from them."""
+    found = list[Patch]()
+    if inertia:
+        known = masses(system)
+        own = known.patches(inertia) if known is not None else None
+        if own is None:
+            return None
+        found += own
+    if speed:
+        begun = start_speeds(system, *speed)
+        own = begun.patches(speed) if begun is not None else None
+        if own is None:
+            return None
+        found += own
+    return found
 
 
 @memoize

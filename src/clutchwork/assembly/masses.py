@@ -69,7 +69,7 @@ class Masses:
         share = {name: 1.0 + PROBE * (1.0 + rank[place]) for name, place in self.places.items()}
         moved = {name: float(self.inertia[place]) * share[name] for name, place in self.places.items()}
         given = assembled(changed_model(source, moved), system.wanted)["arrays"]
-        own = patched(system.arrays, self.patches(moved) or [])
+        own = {**system.arrays, **patched(system.arrays, self.patches(moved) or [])}
         return all(given[name].tobytes() == array.tobytes() for name, array in own.items())
 
     @cached_property

@@ -253,13 +253,12 @@ def _of_contact(contact: Any) -> tuple[Any, Any, Any]:
 
 
 def patched(arrays: Mapping[str, NDArray[Any]], found: list[Patch]) -> dict[str, NDArray[Any]]:
-    """The arrays with the patches; those without are the same objects."""
-    made = dict(arrays)
-    for patch in found:
-        if made[patch.array] is arrays[patch.array]:
-            made[patch.array] = arrays[patch.array].copy()
-        if len(patch.values) == 1:
-            made[patch.array].flat[patch.start] = patch.values[0]
+    """Copies of the arrays that have patches, with these."""
+    made = dict[str, NDArray[Any]]()
+    for name, start, values in found:
+        array = made[name] if name in made else made.setdefault(name, arrays[name].copy())
+        if len(values) == 1:
+            array.flat[start] = values[0]
         else:
-            made[patch.array].reshape(-1)[patch.start : patch.start + len(patch.values)] = patch.values
+            array.reshape(-1)[start : start + len(values)] = values
     return made
