@@ -302,7 +302,7 @@ def test_speeds_at_the_start_that_were_not_given():
 
 
 def test_a_speed_at_the_start_is_not_assembled_anew(monkeypatch: pytest.MonkeyPatch) -> None:
-    """Shafts follow a gear; one of which an element makes more, such as a flyweight's force, is looked at as a whole."""
+    """Shafts follow a gear; one of which an element makes more, such as a force of weights, is looked at as a whole."""
     d = cw.Driveline("pair")
     a, b, drum = d.shaft("a", inertia=1.0), d.shaft("b", inertia=2.0), d.shaft("drum", inertia=1.0)
     d.add(cw.Gear("g", input=a, output=b, ratio=-3.0))
