@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Iterator, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import MISSING
 from functools import cache
 from numbers import Real
@@ -20,7 +20,7 @@ from clutchwork.model.numbers import At as At
 from clutchwork.model.numbers import as_float, curve_problems, instead, is_right, list_problems
 from clutchwork.model.numbers import number_problems as number_problems
 from clutchwork.model.pools import coefficients
-from clutchwork.signals.bases.extremes import extremes
+from clutchwork.signals.bases.extremes import Reached, extremes
 
 
 class Broken:
@@ -176,9 +176,10 @@ def signal_problems(value: Any, spec: Spec, at: At) -> Iterator[Problem]:
         yield from found
         for name, message, remedy in () if found else value.unit_problems((at.unit, *spec.units)):
             yield at.inner(name).problem(message, remedy=remedy)
-        yield from () if found else _beyond_bounds(value, spec, at)
-        asked = spec.presses and not found and not _grows(value)
-        yield from _never_presses((load for _, load in extremes(value)), at) if asked else ()
+        reached = () if found or not (spec.bound or spec.presses) else tuple(extremes(value))
+        yield from _beyond_bounds(reached, spec, at) if spec.bound else ()
+        negative = spec.presses and not any(load > 0.0 for _, load in reached) and not found and not _grows(value)
+        yield from _never_presses((load for _, load in reached), at) if negative else ()
     elif (isinstance(value, Real) and not isinstance(value, bool)) or _is_measured(value):
         found = list(number_problems(value, spec, at))
         yield from found
@@ -216,9 +217,8 @@ def _is_measured(value: Any) -> bool:
     return has_unit(value) and (not isinstance(value, str) or split(value) is not None or has_comma(value))
 
 
-def _beyond_bounds(signal: Signal, spec: Spec, at: At) -> Iterator[Problem]:
+def _beyond_bounds(found: Sequence[Reached], spec: Spec, at: At) -> Iterator[Problem]:
     """The first extreme of a signal that is out of bounds by more than the round-off of its pieces."""
-    found = tuple(extremes(signal)) if spec.bound else ()
     slack = 1e-14 * max((abs(value) for _, value in found), default=0.0)
     for time, value in found:
         ends = (end for end in (spec.at_least, spec.at_most) if end is not None and abs(value - end) <= slack)
