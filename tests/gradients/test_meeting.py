@@ -130,3 +130,22 @@ def test_equal_extremes_of_a_signal_that_is_zero_there_are_one():
     found = cw.differentiable(d, 20.0, of=cw.maximum("c1.slip"), by="c1.gain").gradient()
     assert found.values[0] == pytest.approx(0.0, abs=1e-12)
     assert found.matrix[0, 0] == pytest.approx(0.0, abs=1e-9)
+
+
+def test_equal_extremes_of_a_slip_that_is_round_off_are_one():
+    """Gears, losses and a closed clutch hold all shafts; the slip is zero but for 1e-18 rad/s from the gear rows."""
+    d = cw.Driveline("held")
+    a, b = d.shaft("a", inertia=0.362), d.shaft("b", inertia=0.172)
+    c, e = d.shaft("c", inertia=0.339, speed=0.0), d.shaft("e", inertia=0.601)
+    d.add(cw.Planetary("p", sun=a, ring=b, carrier=c, ratio=2.21))
+    d.add(cw.Planetary("q", sun=b, ring=a, carrier=e, ratio=1.43))
+    losses = [(0.0, 0.799, 0.385, 0.0, 0.0), (10000.0, 0.436, 0.930, 0.0, 0.0)]
+    d.add(cw.LossyGear("g", input=c, output=b, support=a, ratio=0.6, loss_table=losses))
+    points = [(0.002618, -24.14), (0.005857, 26.92), (0.02967, -13.51), (0.02967, 0.0)]
+    d.add(cw.Torque("drive", shaft=a, torque=cw.Table(points)))
+    law = cw.CoefficientTable(static=0.458, kinetic=[(0.0, 0.111), (29.4, 0.0925)])
+    load = cw.Sine(amplitude=716862.0, frequency=4.881889763779528, offset=-476500.0, damping=7.34)
+    d.add(cw.PlateContact("k", base=c, follower=b, friction=law, gain=0.000317, pressure=load))
+    found = cw.differentiable(d, 0.127, of=cw.maximum("k.slip"), by="a.inertia").gradient()
+    assert abs(found.values[0]) < 1e-15
+    assert abs(found.matrix[0, 0]) < 1e-12

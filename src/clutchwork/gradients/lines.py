@@ -86,7 +86,7 @@ def _line(run: Run, name: str, one: Measure, sizes: Array, allowed: float) -> Li
     found = np.array([run.slope(change) for change in one.changes])
     least = most = found[0]
     why, lost = "", unknown(run, one, sizes)
-    apart = _apart(found, max(one.size, LEAST) / sizes) if len(found) > 1 else NOWHERE
+    apart = _apart(found, max(one.size, _of_its_kind(run.primal, one), LEAST) / sizes) if len(found) > 1 else NOWHERE
     if len(apart):
         remedy = "move a number so that one of them is the only one"
         when = f"{one.when[0]:.9g} s and at {one.when[apart[0]]:.9g} s"
@@ -130,6 +130,13 @@ def _size(primal: Primal, columns: Places, time: float) -> float:
     }
     largest = max((abs(number) for first, end in used for number in row[first:end].tolist()), default=0.0)
     return max(float(np.abs(row[columns]).max(initial=0.0)), PASSES * largest)
+
+
+def _of_its_kind(primal: Primal, one: Measure) -> float:
+    """A share of the largest number of the kinds that it is made of in a run: it may be round-off, as a slip at rest."""
+    own = np.unique(np.concatenate([NOWHERE, *one.changes[0].columns]))
+    kinds = [part for part in primal.columns.values() if np.any((own >= part.start) & (own < part.stop))]
+    return PASSES * max((float(np.abs(primal.rows[:, part]).max(initial=0.0)) for part in kinds), default=0.0)
 
 
 def _apart(found: Array, sizes: Array) -> Places:
