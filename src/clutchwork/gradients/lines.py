@@ -133,7 +133,7 @@ def _size(primal: Primal, columns: Places, time: float) -> float:
 
 
 def _of_its_kind(primal: Primal, one: Measure) -> float:
-    """A share of the largest number of the kinds that it is made of in a run: it may be round-off, as a slip at rest."""
+    """A share of the largest number of the kinds that it is made of in a run: it may be round-off, a slip at rest."""
     own = np.unique(np.concatenate([NOWHERE, *one.changes[0].columns]))
     kinds = [part for part in primal.columns.values() if np.any((own >= part.start) & (own < part.stop))]
     return PASSES * max((float(np.abs(primal.rows[:, part]).max(initial=0.0)) for part in kinds), default=0.0)
