@@ -18,19 +18,6 @@ inline double rounded_step(double h) {
   return std::bit_cast<double>(bits);
 }
 
-/// x^(-1/5) of a normal number, to some units of its last place: what lengths of steps follow from errors by. A
-/// third of the time of the power function. docs/theory/integrators.md (14)
-inline double fifth_root_of_inverse(double x) {
-  // exponents are divided with the digits behind them, which is right to 4 %
-  double y = std::bit_cast<double>(0x4cb8'aa00'0000'0000 - std::bit_cast<std::uint64_t>(x) / 5);
-  for (int round = 0; round < 2; ++round) {
-    // what y is off, and the series of (1 + off)^(-1/5)
-    const double square = y * y, off = x * y * (square * square) - 1;
-    y -= y * (off * (0.2 - off * (0.12 - off * 0.088)));
-  }
-  return y;
-}
-
 /// Where a phase is between its steps.
 template <class T>
 struct StepSize {
