@@ -3,8 +3,10 @@
 #include <clutchwork/layout.gen.hpp>
 
 #include <algorithm>
+#include <atomic>
 #include <cmath>
 #include <cstdint>
+#include <memory>
 #include <vector>
 
 #include "threads.hpp"
@@ -14,6 +16,12 @@ namespace clutchwork::many {
 
 /// Runs that one thread takes at once, where there are many.
 constexpr std::int64_t most_at_once = 16;
+
+/// Consecutive runs, of which threads take some after others.
+struct Part {
+  std::int64_t first, last;
+  alignas(64) std::atomic<std::int64_t> taken{0};
+};
 
 struct Member {
   cw_run* run;
@@ -42,18 +50,8 @@ struct Task {
   std::int64_t row_size;
   std::int32_t* status;
   std::vector<Waiting>* waiting;
+  bool backward;  ///< the last ones go first
 };
-
-/// Memory of a run of a few speeds that steps of one length read [byte]: what stands before is read between events,
-/// what follows is theirs less often.
-constexpr int seldom_read = 2560, often_read = 9216;
-
-/// Ask for the memory of a run that is next, while another one goes on.
-inline void ask_for(const cw_run* run) {
-  const auto* at = reinterpret_cast<const unsigned char*>(run);
-#pragma GCC unroll 16
-  for (int i = seldom_read; i < often_read; i += 64) __builtin_prefetch(at + i, 1);
-}
 
 /// Numbers of an event, after the number of its run.
 inline std::int64_t event_kept() { return 1 + cw_event_size(); }
@@ -80,22 +78,27 @@ inline int advance(const Task& task, const Member& member, std::vector<double>& 
   return status;
 }
 
-/// All of them on so many threads; the events of each thread.
+/// All of them on so many threads; the events of each thread. A thread begins with its own part, the same in every
+/// call, and helps others behind it: most of what it reads is near its processor still.
 template <class Pause>
 std::vector<std::vector<double>> advance_all(const Task& task, int threads, Course& course, Pause&& pause) {
   const auto count = std::int64_t(task.members.size());
   threads = int(std::clamp<std::int64_t>(count, 1, threads));
   const std::int64_t chunk = std::clamp<std::int64_t>(count / (4 * threads), 1, most_at_once);
   std::vector<std::vector<double>> events(std::size_t(threads), std::vector<double>{});
+  const std::unique_ptr<Part[]> parts(new Part[std::size_t(threads)]);
+  for (int k = 0; k < threads; ++k) parts[k].first = k * count / threads, parts[k].last = (k + 1) * count / threads;
   on_threads(threads, course, pause, [&](int number) {
-    for (std::int64_t first; (first = course.next.fetch_add(chunk)) < count && !course.stop;) {
-      const std::int64_t last = std::min(first + chunk, count);
-      for (std::int64_t i = first; i < last && !course.stop; ++i) {
-        const Member& member = task.members[std::size_t(i)];
-        if (i + 1 < last) ask_for(task.members[std::size_t(i + 1)].run);
-        cw_set_poll(member.run, &Course::stopped, &course);
-        task.status[member.number] = advance(task, member, events[std::size_t(number)]);
-        cw_set_poll(member.run, nullptr, nullptr);
+    for (int k = 0; k < threads; ++k) {
+      Part& part = parts[(number + k) % threads];
+      const std::int64_t size = part.last - part.first;
+      for (std::int64_t begin; !course.stop && (begin = part.taken.fetch_add(chunk)) < size;) {
+        for (std::int64_t i = begin; i < std::min(begin + chunk, size) && !course.stop; ++i) {
+          const Member& member = task.members[std::size_t(task.backward ? part.last - 1 - i : part.first + i)];
+          cw_set_poll(member.run, &Course::stopped, &course);
+          task.status[member.number] = advance(task, member, events[std::size_t(number)]);
+          cw_set_poll(member.run, nullptr, nullptr);
+        }
       }
     }
   });

@@ -283,9 +283,12 @@ class Side {
     const std::size_t count = runs_.size();
     if (ends.shape(0) != count || rows.shape(0) != count || status.shape(0) != count)
       throw nb::value_error("give an end, a row and a status for each run");
-    many::Task task{{}, ends.data(), rows.data(), std::int64_t(rows.shape(1)), status.data(), &waiting_};
+    many::Task task{{}, ends.data(), rows.data(), std::int64_t(rows.shape(1)), status.data(), &waiting_, backward_};
+    // those that were last are near still: they go first
+    backward_ = !backward_;
     if (task.row_size != row_size_) throw nb::value_error("rows must have row_size columns");
     std::vector<bool> there(count, false);
+    task.members.reserve(which.shape(0));
     for (std::size_t i = 0; i < which.shape(0); ++i) {
       const std::int64_t number = which.data()[i];
       cw_run* run = at(number);
@@ -316,7 +319,7 @@ class Side {
   std::vector<cw_run*> runs_;
   std::vector<many::Waiting> waiting_;
   std::int64_t row_size_ = -1;
-  bool going_ = false;
+  bool going_ = false, backward_ = false;
 
   /// While they go on.
   struct Going {

@@ -45,6 +45,8 @@ void against_the_library() {
   compare([](double x) { return core::atan(x); }, [](auto x) { return std::atan(x); }, -3, 3);
   compare([](double x) { return core::atan(x); }, [](auto x) { return std::atan(x); }, -1e6, 1e6, 1);
   compare([](double x) { return core::cbrt(x); }, [](auto x) { return std::cbrt(x); }, 0, 100);
+  compare([&](double x) { return core::fifth_root_of_inverse(far(x)); },
+          [&](auto x) { return 1 / std::pow(decltype(x)(far(x)), decltype(x)(1) / 5); }, -1000, 1000, 40);
   for (double power : {-0.2, 0.5, 1.7, 40.3})
     compare([&](double x) { return core::pow(x, power); }, [&](auto x) { return std::pow(x, decltype(x)(power)); }, 0,
             10);

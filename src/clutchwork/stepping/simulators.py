@@ -81,6 +81,7 @@ class Simulators:
         self._rows = np.empty((self._count, self._runs[0].row_size))
         self._times = np.array([run.time for run in self._runs])
         self._status = np.full(self._count, DONE, dtype=np.int32)
+        self._all = np.arange(self._count)
         self._stale = np.ones(self._count, dtype=bool)
         self._events = np.empty((0, 0))
         self._signals = signals(self._system)
@@ -110,12 +111,9 @@ class Simulators:
         if step < 0.0:
             raise UseError("sims.advance", [f"duration is {step:g} s: it must not be negative; use sims.restore"])
         chosen = self._chosen("sims.advance", which)
-        chosen = chosen[self._status[chosen] == DONE]
-        ends = self._times.copy()
-        # most runs stand at few times
-        for time in np.unique(self._times[chosen]).tolist():
-            ends[self._times == time] = after(time, step)
-        chosen = chosen[ends[chosen] > self._times[chosen]]
+        if self._any_ended():
+            chosen = chosen[self._status[chosen] == DONE]
+        ends, chosen = self._ends(chosen, step)
         self._events, raised = self._side.advance(chosen, ends, self._rows, self._status, self._threads)
         if raised is not None:
             # some have got there, some have not begun: each stands where it is, and can go on
@@ -123,11 +121,30 @@ class Simulators:
             for number in chosen.tolist():
                 self._times[number] = self._runs[number].time
             raise raised
-        reached = self._status[chosen] == DONE
-        self._times[chosen[reached]] = ends[chosen[reached]]
-        self._stale[chosen] = ~reached
-        for number in chosen[~reached].tolist():
-            self._times[number] = self._runs[number].time
+        there = self._places(chosen)
+        self._times[there], self._stale[there] = ends[there], False
+        if self._any_ended():
+            for number in chosen[self._status[chosen] != DONE].tolist():
+                self._times[number], self._stale[number] = self._runs[number].time, True
+
+    def _ends(self, chosen: Numbers, step: float) -> tuple[Array, Numbers]:
+        """Where each of these runs ends that goes on by a step, in an array of all; those that get any farther."""
+        ends, there = self._times.copy(), self._places(chosen)
+        now = self._times[there]
+        first, last = (float(now.min()), float(now.max())) if len(now) else (0.0, 0.0)
+        # most runs stand at few times
+        for time in [first] if first == last else np.unique(now).tolist():
+            ends[self._times == time] = after(time, step)
+        if (ends[there] > now).all():
+            return ends, chosen
+        return ends, chosen[ends[chosen] > self._times[chosen]]
+
+    def _any_ended(self) -> bool:
+        return bool((self._status != DONE).any())
+
+    def _places(self, chosen: Numbers) -> Any:
+        """What selects runs from arrays of all: a slice where these are all."""
+        return slice(None) if len(chosen) == self._count else chosen
 
     # ------------------------------------------------------------------------------------------------------ setting
 
@@ -154,7 +171,7 @@ class Simulators:
             raise ModelError(problems, self._system.name)
         for place, values in plan:
             self._side.set(chosen, place, values)
-        self._stale[chosen] = True
+        self._stale[self._places(chosen)] = True
 
     def __setitem__(self, name: str, value: ArrayLike) -> None:
         """The same as `set`."""
@@ -171,11 +188,10 @@ class Simulators:
             wanted = f"give one number, or an array of {counted(count, 'numbers')}"
             shape = "" if array is None else f" of shape {array.shape}"
             raise UseError("sims.set", [f"{quote(name)} is {quote(given)}{shape}: {wanted}"])
-        # the ends of the range say whether all are allowed
+        # the ends of the range say whether all are allowed; they are no numbers where one is none
         tried = {float(array.min()), float(array.max())} if array.size else set[float]()
-        tried |= {float("nan")} if not np.isfinite(array).all() else set()
         problems = [problem for one in tried for problem in signal.read(one)[1]]
-        return np.array(np.broadcast_to(array, (count,))), problems
+        return np.ascontiguousarray(array) if array.shape else np.full(count, float(array)), problems
 
     def _parameter(self, name: Any) -> Problem | None:
         """Why a parameter is not set while runs go on."""
@@ -247,6 +263,8 @@ class Simulators:
 
     def _refresh(self) -> None:
         """Rows of runs that were set since they went on."""
+        if not self._stale.any():
+            return
         self._side.give()
         for number in np.flatnonzero(self._stale & ~self.failed).tolist():
             self._rows[number] = seen(self._runs[number])[0]
@@ -311,7 +329,7 @@ class Simulators:
     def _chosen(self, call: str, which: Any) -> Numbers:
         """Numbers of runs that a call means."""
         if which is None:
-            return np.arange(self._count)
+            return self._all
         given = np.asarray(which)
         if given.dtype == bool and given.shape == (self._count,):
             return np.flatnonzero(given)

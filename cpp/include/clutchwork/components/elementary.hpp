@@ -270,6 +270,18 @@ inline double cbrt(double x) {
   return y - (y * y * y - x) / (3 * y * y);
 }
 
+/// x^(-1/5) of a normal positive number, to 40 units of its last place: an eighth of the instructions of the power.
+inline double fifth_root_of_inverse(double x) {
+  // the exponent is divided with the digits behind it, which is right to 4 %
+  double y = std::bit_cast<double>(0x4cb8'aa00'0000'0000 - std::bit_cast<std::int64_t>(x) / 5);
+  for (int round = 0; round < 2; ++round) {
+    // the series of (1 + off)^(-1/5), off being how far x y^5 is from one
+    const double square = y * y, off = x * y * (square * square) - 1;
+    y -= y * (off * (0.2 - off * (0.12 - off * 0.088)));
+  }
+  return y;
+}
+
 inline float exp(float x) { return float(exp(double(x))); }
 inline float log(float x) { return float(log(double(x))); }
 inline float pow(float x, float y) { return float(pow(double(x), double(y))); }

@@ -11,6 +11,14 @@ struct OneState {
   T inverse, push, gain;
 };
 
+/// a b for a few numbers; the first product is not added to zero, for which everything behind it would wait.
+template <class T>
+CLUTCHWORK_HOT T few_products(int n, const T* a, const T* b) {
+  T s = n > 0 ? a[0] * b[0] : T(0);
+  for (int i = 1; i < n; ++i) s += a[i] * b[i];
+  return s;
+}
+
 /// Up to a handful of speeds: M = 1, dense rows. NZ, NS: numbers of speeds and of states where the compiler knows them,
 /// else -1; in memory all of them are alike.
 template <class T, int NZ = -1, int NS = -1>
@@ -31,12 +39,7 @@ struct SmallForm {
   CLUTCHWORK_HOT int ns() const { return NS < 0 ? states : NS; }
   CLUTCHWORK_HOT int n() const { return nz() + ns(); }
 
-  CLUTCHWORK_HOT T rate(int k, const T* z) const {
-    const T* r = ws.reduced.row_z + k * nz();
-    T s = T(0);
-    for (int i = 0; i < nz(); ++i) s += r[i] * z[i];
-    return s;
-  }
+  CLUTCHWORK_HOT T rate(int k, const T* z) const { return few_products(nz(), ws.reduced.row_z + k * nz(), z); }
   CLUTCHWORK_HOT void push(int k, T torque, T* q) const {
     const T* r = ws.reduced.row_z + k * nz();
     for (int i = 0; i < nz(); ++i) q[i] += r[i] * torque;
@@ -62,11 +65,7 @@ struct SmallForm {
   }
   CLUTCHWORK_HOT void solve(T* b) const {
     T x[small_speeds];
-    for (int i = 0; i < nz(); ++i) {
-      T s = T(0);
-      for (int j = 0; j < nz(); ++j) s += w[i * nz() + j] * b[j];
-      x[i] = s;
-    }
+    for (int i = 0; i < nz(); ++i) x[i] = few_products(nz(), w + i * nz(), b);
     for (int i = 0; i < nz(); ++i) b[i] = x[i];
   }
 

@@ -70,7 +70,7 @@ struct StepSize {
   /// A shorter step. False: it is too short.
   CLUTCHWORK_INLINE bool shorten() {
     ++ws_.statistics.rejected;
-    h_ = rounded_step(reach_ * (error_ < 1e300 ? larger(0.2, 0.9 * pow(error_, -0.2)) : 0.1));
+    h_ = rounded_step(reach_ * (error_ < 1e300 ? larger(0.2, 0.9 * fifth_root_of_inverse(error_)) : 0.1));
     rejected_ = true;
     before_ = 0;
     return h_ > 1e-14 * larger(1e-2, abs(ws_.time));
@@ -86,7 +86,7 @@ struct StepSize {
   /// Time and length of the next step after one that counts.
   CLUTCHWORK_INLINE void move_on() {
     ws_.time = end_of_step();
-    const double growth = 0.9 * pow(larger(error_, 1e-10), -0.2);
+    const double growth = 0.9 * fifth_root_of_inverse(larger(error_, 1e-10));
     const double next = rounded_step(reach_ * smaller(rejected_ ? 1.0 : 6.0, larger(0.2, growth)));
     h_ = cut_ ? larger(next, h_) : larger(next, before_);
     rejected_ = false;

@@ -27,10 +27,10 @@ struct Loads {
 
   template <class P, class A>
   static void lay_out(P& p, A& a, const Sizes& n) {
-    a.take(p.of, n.contacts), a.keep(p.line, n.loads, 0, 1), a.scratch(p.by_torque, n.loads * n.directions);
+    a.take(p.of, n.contacts), a.keep(p.line, n.loads, 0, 1), a.take(p.now, n.loads);
+    a.scratch(p.by_torque, n.loads * n.directions);
     a.scratch(p.by_slope, n.loads * n.prescribed), a.scratch(p.by_branch, n.loads * n.directions);
-    a.scratch(p.by_prescribed, n.loads * n.prescribed), a.scratch(p.outer, n.loads), a.take(p.now, n.loads),
-        a.scratch(p.drift, n.loads);
+    a.scratch(p.by_prescribed, n.loads * n.prescribed), a.scratch(p.outer, n.loads), a.scratch(p.drift, n.loads);
     a.take(p.sliding, n.loads), a.take(p.branch, n.loads), a.scratch(p.momentum, n.loads * n.speeds);
     const auto beside = n.transmissions > 0 ? n.loads : 0;
     a.scratch(p.by_held, beside * n.contacts), a.scratch(p.beside_torque, beside * n.directions);

@@ -136,9 +136,7 @@ struct Rodas5P {
       const T found = own[0] * one.inverse, push = found * one.push;
       for (int i = 0; i < nz; ++i) b[i] += one.row[i] * push;
       form.solve(b);
-      T rate = T(0);
-      for (int i = 0; i < nz; ++i) rate += one.row[i] * b[i];
-      own[0] = found + one.gain * rate;
+      own[0] = found + one.gain * few_products(nz, one.row, b);
       return;
     }
     each_own(form, [&](int k) CLUTCHWORK_HOT_LAMBDA {
