@@ -45,6 +45,11 @@ template <int R, int NZ>
 [[gnu::noinline]] void evaluate(LaneForm<R, NZ>& form, const Lanes<R>& t, const Lanes<R>* y, Lanes<R>* d) {
   evaluate_inline(form, t, y, d);
 }
+template <int R, int NZ, int NS>
+  requires(NS >= 0)
+CLUTCHWORK_INLINE void evaluate(LaneForm<R, NZ, NS>& form, const Lanes<R>& t, const Lanes<R>* y, Lanes<R>* d) {
+  evaluate<R, NZ>(reinterpret_cast<LaneForm<R, NZ>&>(form), t, y, d);
+}
 
 /// Whether nothing overflows at the end of a step and in what is read of it: what a row tells of energy has the size of
 /// the squares of the speeds.
@@ -98,15 +103,24 @@ CLUTCHWORK_INLINE void visit_lanes(void* form, void* step, F&& f) {
     return f(*static_cast<LaneForm<R, NZ>*>(form), *static_cast<Step<LaneForm<R, NZ>>*>(step));
   if constexpr (NZ < small_speeds) visit_lanes<R, NZ + 1>(form, step, f);
 }
+/// The same with the number of states, NS or more: half of a loop over so few numbers is counting.
+template <int R, int NZ, int NS = 0, class F>
+CLUTCHWORK_INLINE void visit_states(LaneForm<R, NZ>& form, Step<LaneForm<R, NZ>>& step, F&& f) {
+  if (form.ns() == NS)
+    return f(reinterpret_cast<LaneForm<R, NZ, NS>&>(form), reinterpret_cast<Step<LaneForm<R, NZ, NS>>&>(step));
+  if constexpr (NS < small_states) visit_states<R, NZ, NS + 1>(form, step, f);
+}
 
 /// What is compiled once for each width of registers. The lanes are in memory alike for all of them.
 template <int R>
 struct LaneStep {
   /// One step of all lanes; their errors, and whether their new states are finite.
   static void advance(void* form, void* step, void* error, void* finite) {
-    visit_lanes<R>(form, step, [&](auto& f, auto& s) {
-      *static_cast<Lanes<R>*>(error) = Rodas5P::advance(f, s, s.h);
-      *static_cast<Mask<R>*>(finite) = all_finite(f.n(), s.y1());
+    visit_lanes<R>(form, step, [&](auto& any, auto& at) {
+      visit_states(any, at, [&](auto& f, auto& s) {
+        *static_cast<Lanes<R>*>(error) = Rodas5P::advance(f, s, s.h);
+        *static_cast<Mask<R>*>(finite) = all_finite(f.n(), s.y1());
+      });
     });
   }
   /// Derivatives and guards at its end, at these times.
