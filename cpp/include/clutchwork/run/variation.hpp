@@ -7,6 +7,7 @@
 #include <clutchwork/run/output.hpp>
 #include <clutchwork/run/step.hpp>
 #include <clutchwork/run/step_calls.hpp>
+#include <clutchwork/run/step_size.hpp>
 #include <clutchwork/workspace.hpp>
 
 #include <utility>
