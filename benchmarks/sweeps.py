@@ -43,8 +43,22 @@ def sweep(system: cw.System, variants: int, threads: int, outputs: Any = "w8.spe
     return taken
 
 
-def loop(folder: Path, system: cw.System, variants: int) -> Callable[[int], Taken] | None:
-    """The loop in C++ with the core of this build; None where there is none."""
+class Loop(NamedTuple):
+    """The loop in C++: a program and its arguments but for the threads."""
+
+    program: Path
+    before: tuple[str, ...]
+
+    def run(self, threads: int, copies: int = 1) -> Taken:
+        """Copies of the program side by side; the time of the slowest one."""
+        command = [str(self.program), *self.before, str(threads), str(T_END), "0"]
+        running = [subprocess.Popen(command, stdout=subprocess.PIPE, text=True) for _ in range(copies)]
+        texts = [one.communicate()[0].split()[:2] for one in running]
+        return Taken(*(max(float(text[i]) for text in texts) for i in range(2)))
+
+
+def loop(folder: Path, system: cw.System, variants: int) -> Loop | None:
+    """With the core of this build; None where there is none."""
     objects = core_objects()
     if not objects:
         return None
@@ -60,13 +74,7 @@ def loop(folder: Path, system: cw.System, variants: int) -> Callable[[int], Take
     subprocess.run([*command, *objects, "-o", str(program)], check=True)
     data.write_bytes(system.to_bytes())
 
-    def run(threads: int) -> Taken:
-        number = str(place(system, NAME))
-        arguments = [str(data), number, str(FIRST), str(LAST), str(variants), str(threads), str(T_END), "0"]
-        text = subprocess.run([str(program), *arguments], capture_output=True, text=True, check=True).stdout
-        return Taken(*map(float, text.split()[:2]))
-
-    return run
+    return Loop(program, (str(data), str(place(system, NAME)), str(FIRST), str(LAST), str(variants)))
 
 
 def rows(quick: bool = False) -> Iterator[Row]:
@@ -79,7 +87,7 @@ def rows(quick: bool = False) -> Iterator[Row]:
     yield from changing(system)
 
 
-def measured(system: cw.System, compiled: Callable[[int], Taken] | None, variants: int, again: int) -> Iterator[Row]:
+def measured(system: cw.System, compiled: Loop | None, variants: int, again: int) -> Iterator[Row]:
     """Shifts a second, and ratios within rounds."""
     kept = dict[str, list[Taken]]()
 
@@ -98,7 +106,9 @@ def measured(system: cw.System, compiled: Callable[[int], Taken] | None, variant
         "full": contestant("full", lambda: sweep(system, variants, 2, all_of), True),
     }
     if compiled is not None:
-        contestants["loop"] = contestant("loop", lambda: compiled(2), True)
+        contestants["loop"] = contestant("loop", lambda: compiled.run(2), True)
+        contestants["copy"] = contestant("copy", lambda: compiled.run(1), False)
+        contestants["copies"] = contestant("copies", lambda: compiled.run(1, copies=2), False)
     taken = rounds(contestants, again)
     each = min(one.wall for one in kept["two"]) / variants
     yield Row(
@@ -118,6 +128,10 @@ def measured(system: cw.System, compiled: Callable[[int], Taken] | None, variant
     one, two = (min(one.wall for one in kept[name]) for name in ("one", "two"))
     share = one / (2 * two)
     yield Row("sweep: efficiency of two threads", f"{100 * share:.0f} %", ">= 95 %", share >= 0.95)
+    if compiled is not None:
+        # what the machine gives to two programs that share nothing
+        copy, copies = (min(one.wall for one in kept[name]) for name in ("copy", "copies"))
+        yield Row("sweep: efficiency of two copies of the loop in C++", f"{100 * copy / copies:.0f} %")
 
 
 def changing(system: cw.System) -> Iterator[Row]:

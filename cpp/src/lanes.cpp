@@ -28,21 +28,29 @@ static_assert(most_together == n_lanes);
 /// Models with more seldom have phases that are small.
 constexpr std::int64_t most_contacts = 24;
 
+#ifdef CLUTCHWORK_WIDEST
+constexpr LaneKernel widest{clutchwork_widest_advance, clutchwork_widest_look, clutchwork_widest_doubt,
+                            clutchwork_widest_observe, clutchwork_widest_fit};
+#endif
 #ifdef CLUTCHWORK_WIDE
 constexpr LaneKernel wide{clutchwork_wide_advance, clutchwork_wide_look, clutchwork_wide_doubt, clutchwork_wide_observe,
                           clutchwork_wide_fit};
 #endif
-#ifndef CLUTCHWORK_WIDE_ALONE
+#if !defined(CLUTCHWORK_WIDE) && !defined(CLUTCHWORK_WIDEST)
 constexpr LaneKernel narrow{LaneStep<2>::advance, LaneStep<2>::linearize_at, LaneStep<2>::doubt, LaneStep<2>::observe,
                             LaneStep<2>::fit};
 #endif
 
 /// The widest registers that this processor has; null: none of those that are compiled.
 const LaneKernel* lane_kernel() {
+#ifdef CLUTCHWORK_WIDEST
+  // not the first generation of AVX-512, which lowers its clock for it
+  if (__builtin_cpu_supports("avx512vbmi2") && __builtin_cpu_supports("avx512vl")) return &widest;
+#endif
 #ifdef CLUTCHWORK_WIDE
   if (__builtin_cpu_supports("avx2")) return &wide;
 #endif
-#ifdef CLUTCHWORK_WIDE_ALONE
+#if defined(CLUTCHWORK_WIDE) || defined(CLUTCHWORK_WIDEST)
   return nullptr;
 #else
   return &narrow;

@@ -11,9 +11,11 @@ import pytest
 from clutchwork import _core
 from clutchwork.assembly.system import System
 from support import random_contacts, random_drivelines, random_large, six_speed
-from support.amount import seeds
+from support.amount import amount, seeds
+from support.any_model import model
 from support.pages import page
 from support.project import ROOT
+from support.sweep import sweep
 
 METHODS = {"auto": 0.0, "rodas5p": 1.0}
 
@@ -81,6 +83,31 @@ def test_in_pieces_with_work(seed: int) -> None:
     for t in (0.2, 0.4, 0.6, 0.8, 1.0):
         assert _core.advance_group(together, t) == [advance(one, t) for one in alone]
     assert [told(one) for one in together] == [told(one) for one in alone]
+
+
+@pytest.mark.random
+@pytest.mark.filterwarnings("ignore::clutchwork.ModelWarning")
+def test_models_of_everything() -> None:
+    """Whatever is declared; one of the eight spends its budget of steps, and some models end before their time."""
+
+    def checked(seed: int) -> str:
+        made = model.model(seed)
+        system, t_end = model.driveline(made).assemble(), made["simulation"]["t_end"]
+        options = {"work": float(seed % 3 == 0), "angles": float(seed % 2)}
+        alone, together = ([], [])
+        for group in (alone, together):
+            rng = np.random.default_rng(seed)
+            for budget in (1e4, 1e4, 15.0, 1e4, 1e4, 1e4, 1e4, 1e4):
+                method = "auto" if seed % 4 == 3 else "rodas5p"
+                group.append(run(system, rng, method, max_steps=budget, **options))
+        for t in (0.4 * t_end, t_end):
+            found, expected = _core.advance_group(together, t), [advance(one, t) for one in alone]
+            if found != expected:
+                return f"at {t} s they end with {found}, alone with {expected}"
+        wrong = [k for k in range(8) if told(alone[k]) != told(together[k])]
+        return f"runs {wrong} differ" if wrong else ""
+
+    sweep(checked, amount(20))
 
 
 def test_six_speed_shift() -> None:

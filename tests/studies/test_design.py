@@ -54,6 +54,14 @@ def test_points_do_not_depend_on_the_parts_they_are_drawn_in(method: str) -> Non
     assert METHODS[method](3, 5000, 8).rows(0, 5).tobytes() != whole[:5].tobytes()
 
 
+def test_equal_values_are_there_once() -> None:
+    """Six of the eight variants of a point of Saltelli share each value: what follows from it is made once."""
+    drawn = cw.design({name: cw.uniform(-1.0, 1.0) for name in "abcdef"}, 16, method="saltelli", seed=3)
+    for one in drawn.part(8, 72).varied:
+        assert len(one.values) == len(set(one.values)) == 16
+        assert one.column.tobytes() == drawn[one.name][8:72].tobytes()
+
+
 def test_points_fill_the_cube() -> None:
     latin = METHODS["latin"](2, 1000, 0).rows(0, 1000)
     assert all(sorted(np.floor(1000 * column).tolist()) == list(range(1000)) for column in latin.T)

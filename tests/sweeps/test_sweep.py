@@ -106,6 +106,14 @@ def test_all_mistakes_of_values_at_once():
         cw.sweep(discs(), 3.0, vary={"c1.gian": [1.0]}, outputs="load.speed")
 
 
+@pytest.mark.parametrize("wrong", [0.0, -1.0, np.nan, np.inf, -np.inf, "much", None, True])
+def test_one_wrong_value_among_many(wrong):
+    """Values are judged by their least and their most, and each alone where that does not tell."""
+    gains = [*np.linspace(0.2, 0.3, 20).tolist(), wrong, *np.linspace(0.3, 0.2, 20).tolist()]
+    with pytest.raises(cw.ClutchworkError, match=r"gain"):
+        cw.sweep(six_speed.gearbox(six_speed.SHIFT), 4.0, vary={"F1.gain": gains}, outputs="w8.speed")
+
+
 def test_values_that_are_wrong_together():
     vary = {"c1.friction.static": [0.1, 0.2], "c1.friction.kinetic": [0.05, 0.15]}
     with pytest.raises(

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from itertools import pairwise
 from math import inf, isfinite
 from numbers import Real
@@ -70,6 +70,12 @@ def is_right(value: Any, spec: Spec) -> bool:
     """Whether a plain number needs no further look, as almost all do."""
     sound = type(value) is float and isfinite(value) and spec.allows(value) and not spec.whole
     return sound and not (spec.presses and value < 0.0)
+
+
+def are_right(values: Sequence[Any], spec: Spec) -> bool:
+    """Whether plain numbers need no further look: bounds have nothing between them, so the least and the most tell."""
+    plain = bool(values) and {float}.issuperset(map(type, values)) and all(map(isfinite, values))
+    return plain and is_right(min(values), spec) and is_right(max(values), spec)
 
 
 def as_float(value: Real) -> float:

@@ -64,8 +64,11 @@ class Design:
             return replace(self._varied(name, how.how, share), numbers=self.numbers.get(name, {}))
         if isinstance(how, Discrete):
             return Varied(name, how.values, how.labels, how.codes(share), unit)
-        values = tuple(np.asarray(how.quantile(share) if isinstance(how, Distribution) else how.ppf(share)).tolist())
-        return Varied(name, values, values, np.arange(len(values), dtype=np.int64), unit)
+        drawn = np.asarray(how.quantile(share) if isinstance(how, Distribution) else how.ppf(share), dtype=float)
+        # by their bits, for both zeros are numbers of their own; Saltelli's points share most of their values
+        words, codes = np.unique(np.ascontiguousarray(drawn).view(np.uint64), return_inverse=True)
+        values = tuple(words.view(float).tolist())
+        return Varied(name, values, values, codes.astype(np.int64), unit)
 
     def in_si(self, model: Model) -> Design:
         """The same design in SI."""

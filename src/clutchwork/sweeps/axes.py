@@ -28,7 +28,7 @@ from clutchwork.declare.wording import path_of
 from clutchwork.model.changes import Target, renewed, targets_of
 from clutchwork.model.components import component_problems
 from clutchwork.model.fields import law_problems
-from clutchwork.model.numbers import At, is_right, number_problems
+from clutchwork.model.numbers import At, are_right, is_right, number_problems
 from clutchwork.model.parts import role
 from clutchwork.model.thermal import thermal_problems
 from clutchwork.sweeps.driven import IndependentInput
@@ -85,6 +85,8 @@ class Plan:
         spec = _plain_number(aim) if isinstance(aim.owner, Component) else None
         if spec is None:
             return list(self._wrong(one))
+        if are_right(one.values, spec):
+            return []
         return [found for value in one.values for found in _number_problems(value, spec, aim)]
 
     def _wrong(self, one: Varied) -> Iterable[Problem]:

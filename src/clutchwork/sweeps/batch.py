@@ -301,13 +301,17 @@ class Forms:
         self.forms = _over(self.columns, whole)
         self.inner = _over(sorted(self.inside), {name: whole[name] for name in in_steps})
 
-    def values(self, name: str, rows: Array, variant: Array, inside: bool = False) -> Array:
-        """A signal over rows, each of which is of a variant of the block; `inside`: rows of what is read in steps."""
+    def values(self, name: str, rows: Array, variant: Callable[[], Array], inside: bool = False) -> Array:
+        """A signal over rows.
+
+        Parameters: variant, gives of which variant of the block each row is, where forms differ; inside, rows of what
+        is read in steps.
+        """
         forms, which = (self.inner if inside else self.forms)[name]
         if len(forms) == 1:
             return np.asarray(forms[0](rows))
         found = np.empty(len(rows))
-        codes = which[variant]
+        codes = which[variant()]
         for code, form in enumerate(forms):
             mine = codes == code
             found[mine] = form(rows[mine])
@@ -340,7 +344,7 @@ def _from_grid(block: Block, call: Call, forms: Forms, found: Native) -> None:
     wanted, rows = forms.wanted, found.rows
     assert rows is not None  # noqa: S101, the call was for a grid
     flat = rows.reshape(rows.shape[0] * rows.shape[1], rows.shape[2])
-    variant = np.repeat(call.who, rows.shape[1])
+    variant = partial(np.repeat, call.who, rows.shape[1])
     reached = (found.status == DONE)[:, None] | ~np.isnan(rows).all(axis=2) if rows.shape[2] else None
     for name, one in wanted.outputs.items():
         if isinstance(one, AtTimes | AtEnd | FeltJerk | Integral):
@@ -378,7 +382,7 @@ def _from_steps(block: Block, call: Call, forms: Forms, found: Native) -> None:
     for variants, counts, times, rows, _, edges in found.parts:
         some = counts > 0
         who, starts = call.who[variants[some]], (np.cumsum(counts) - counts)[some]
-        variant = np.repeat(call.who[variants], counts)
+        variant, alone = partial(np.repeat, call.who[variants], counts), partial(np.asarray, who)
         ended, first, last = block.status[who] == DONE, edges[some, 0], edges[some, 1]
         for name, one in wanted.outputs.items():
             if isinstance(one, Extreme):
@@ -388,9 +392,9 @@ def _from_steps(block: Block, call: Call, forms: Forms, found: Native) -> None:
                 jerks = _squared(times, forms.values(one.signal, rows, variant, True), starts)
                 _place(block, name, jerks)[who[ended]] = jerks[ended]
             elif isinstance(one, AtEnd | Integral) and not wanted.needs_grid:
-                value = forms.values(wanted.kept_as(one), last, who)
+                value = forms.values(wanted.kept_as(one), last, alone)
                 if isinstance(one, Integral):
-                    value = value - forms.values(wanted.kept_as(one), first, who)
+                    value = value - forms.values(wanted.kept_as(one), first, alone)
                 _place(block, name, value)[who[ended]] = value[ended]
 
 

@@ -2,8 +2,10 @@
 #include <bit>
 #include <cfloat>
 #include <cmath>
+#include <cstddef>
 #include <cstdint>
 #include <limits>
+#include <type_traits>
 
 // what every step spends its time in is inlined in every build, the rest where a build asks for speed:
 // decisions/0041-light.md
@@ -57,12 +59,36 @@ constexpr Pair operator*(Pair a, Pair b) {
   return exact_sum(p.high, p.low + (a.high * b.low + a.low * b.high));
 }
 
-/// c[0] + z (c[1] + z (c[2] + ...)).
-template <int N>
-CLUTCHWORK_HOT constexpr double polynomial(const double (&c)[N], double z) {
-  double s = c[N - 1];
-  for (int i = N - 2; i >= 0; --i) s = c[i] + z * s;
+/// c[0] + z (c[1] + z (c[2] + ...)). X: a number, or several in one register of the processor.
+template <int N, class X>
+CLUTCHWORK_HOT constexpr X polynomial(const double (&c)[N], X z) {
+  X s = c[N - 2] + z * c[N - 1];
+  for (int i = N - 3; i >= 0; --i) s = c[i] + z * s;
   return s;
+}
+
+/// Whole numbers of the width of X.
+template <class X>
+struct WordsOf {
+  typedef std::uint64_t Type __attribute__((vector_size(sizeof(X))));
+};
+template <>
+struct WordsOf<double> {
+  using Type = std::uint64_t;
+};
+template <class X>
+using BitsOf = typename WordsOf<X>::Type;
+
+/// What a table has at these places.
+template <class X>
+CLUTCHWORK_HOT X looked_up(const double* table, const BitsOf<X>& place) {
+  if constexpr (std::is_same_v<X, double>) {
+    return table[place];
+  } else {
+    X found;
+    for (std::size_t i = 0; i < sizeof(X) / sizeof(double); ++i) found[i] = table[place[i]];
+    return found;
+  }
 }
 
 /// The nearest whole number, for sizes below 2^51.
@@ -98,17 +124,18 @@ inline constexpr Table table;
 
 }  // namespace powers
 
-/// exp for sizes below 708, where results are normal numbers.
-CLUTCHWORK_HOT double exp_inside(double x) {
+/// exp for sizes below 708, where results are normal numbers; elsewhere anything.
+template <class X>
+CLUTCHWORK_HOT X exp_inside(X x) {
   // whole numbers end at the last bit of a number of this size
   constexpr double shift = 6755399441055744.0, per_step = 0x1.71547652b82fep+6;
   constexpr double step[] = {0x1.62e42fee00000p-7, 0x1.a39ef35793c76p-39};
-  const double shifted = per_step * x + shift, k = shifted - shift;
-  const std::uint64_t n = std::bit_cast<std::uint64_t>(shifted), i = n % powers::Table::size;
-  const double r = (x - k * step[0]) - k * step[1], square = r * r;
-  const double scale = std::bit_cast<double>(std::bit_cast<std::uint64_t>(powers::table.of[i]) + ((n - i) << 46));
-  const double above =
-      (powers::table.rest[i] + r) + square * (1.0 / 2 + r * (1.0 / 6)) + square * square * (1.0 / 24 + r * (1.0 / 120));
+  const X shifted = per_step * x + shift, k = shifted - shift;
+  const auto n = std::bit_cast<BitsOf<X>>(shifted), i = n & std::uint64_t(powers::Table::size - 1);
+  const X r = (x - k * step[0]) - k * step[1], square = r * r;
+  const X of = looked_up<X>(powers::table.of, i), rest = looked_up<X>(powers::table.rest, i);
+  const X scale = std::bit_cast<X>(std::bit_cast<BitsOf<X>>(of) + ((n - i) << 46));
+  const X above = (rest + r) + square * (1.0 / 2 + r * (1.0 / 6)) + square * square * (1.0 / 24 + r * (1.0 / 120));
   return scale + scale * above;
 }
 
@@ -228,15 +255,24 @@ inline double cos(double x) {
   return q.number == 1 || q.number == 2 ? -size : size;
 }
 
-inline double tanh(double x) {
-  // continued fraction of Lambert to its seventeenth
+/// tanh for sizes below 0.625: continued fraction of Lambert to its seventeenth.
+template <class X>
+CLUTCHWORK_HOT X tanh_near(X x) {
   constexpr double above[] = {11486475, 810810, 12870, 44}, below[] = {34459425, 16216200, 945945, 13860, 45};
+  const X z = x * x;
+  return x - x * (z * polynomial(above, z) / polynomial(below, z));
+}
+
+/// The same for sizes above, up to 20, from which on it is one to the last bit.
+template <class X>
+CLUTCHWORK_HOT X tanh_far(X size) {
+  return 1 - 2 / (exp_inside(2 * size) + 1);
+}
+
+inline double tanh(double x) {
   const double size = abs(x);
-  if (size < 0.625) {
-    const double z = x * x;
-    return x - x * (z * polynomial(above, z) / polynomial(below, z));
-  }
-  const double y = size > 20 ? 1 : 1 - 2 / (exp(2 * size) + 1);
+  if (size < 0.625) return tanh_near(x);
+  const double y = size > 20 ? 1 : tanh_far(size);
   return x < 0 ? -y : x != x ? x : y;
 }
 
@@ -270,10 +306,10 @@ inline double cbrt(double x) {
   return y - (y * y * y - x) / (3 * y * y);
 }
 
-/// x^(-1/5) of a normal positive number, to 40 units of its last place: an eighth of the instructions of the power.
+/// x^(-1/5) of a normal positive number, to 4 units of its last place: an eighth of the instructions of the power.
 inline double fifth_root_of_inverse(double x) {
-  // the exponent is divided with the digits behind it, which is right to 4 %
-  double y = std::bit_cast<double>(0x4cb8'aa00'0000'0000 - std::bit_cast<std::int64_t>(x) / 5);
+  // the exponent is divided with the digits behind it, less what a straight line misses of a logarithm: right to 4 %
+  double y = std::bit_cast<double>(0x4cb8'a7ef'9db2'2d0e - std::bit_cast<std::int64_t>(x) / 5);
   for (int round = 0; round < 2; ++round) {
     // the series of (1 + off)^(-1/5), off being how far x y^5 is from one
     const double square = y * y, off = x * y * (square * square) - 1;

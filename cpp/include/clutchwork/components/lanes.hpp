@@ -111,15 +111,34 @@ struct Lanes {
   friend CLUTCHWORK_INLINE Lanes sqrt(const Lanes& x) {
     return each(x, [](double y) { return sqrt(y); });
   }
-  // these are functions of doubles: the same call in each lane
+  // register by register; what lies outside is seldom
   friend CLUTCHWORK_INLINE Lanes exp(const Lanes& x) {
-    return each(x, [](double y) { return exp(y); });
-  }
-  friend CLUTCHWORK_INLINE Lanes log(const Lanes& x) {
-    return each(x, [](double y) { return log(y); });
+    Lanes r;
+    for (int i = 0; i < parts; ++i) r.part[i] = exp_inside(x.part[i]);
+    const Mask<R> inside = x < Lanes(708) && x > Lanes(-708);
+    if (all(inside)) [[likely]]
+      return r;
+    for (int i = 0; i < n_lanes; ++i) r[i] = inside[i] ? r[i] : exp(x[i]);
+    return r;
   }
   friend CLUTCHWORK_INLINE Lanes tanh(const Lanes& x) {
-    return each(x, [](double y) { return tanh(y); });
+    const Lanes size = abs(x);
+    Lanes r;
+    return choose(
+        size < Lanes(0.625),
+        [&] {
+          for (int i = 0; i < parts; ++i) r.part[i] = tanh_near(x.part[i]);
+          return r;
+        },
+        [&] {
+          for (int i = 0; i < parts; ++i) r.part[i] = tanh_far(size.part[i]);
+          const Lanes y = select(size > Lanes(20), Lanes(1), r);
+          return select(x < Lanes(0), -y, select(x == x, y, x));
+        });
+  }
+  // these are functions of doubles: the same call in each lane
+  friend CLUTCHWORK_INLINE Lanes log(const Lanes& x) {
+    return each(x, [](double y) { return log(y); });
   }
   friend CLUTCHWORK_INLINE Lanes sin(const Lanes& x) {
     return each(x, [](double y) { return sin(y); });

@@ -5,6 +5,7 @@
 #include <clutchwork/run/guards/line.hpp>
 #include <clutchwork/run/guards/torques.hpp>
 #include <clutchwork/run/integrator/rodas5p.hpp>
+#include <clutchwork/run/output.hpp>
 #include <clutchwork/run/step.hpp>
 
 /// A step of eight lanes: the functions of one run, compiled for the registers of a processor. docs/theory/lanes.md
@@ -44,6 +45,11 @@ template <int R>
 template <int R, int NZ>
 [[gnu::noinline]] void evaluate(LaneForm<R, NZ>& form, const Lanes<R>& t, const Lanes<R>* y, Lanes<R>* d) {
   evaluate_inline(form, t, y, d);
+}
+template <int R, int NZ, int NS>
+  requires(NS >= 0)
+CLUTCHWORK_INLINE void evaluate(LaneForm<R, NZ, NS>& form, const Lanes<R>& t, const Lanes<R>* y, Lanes<R>* d) {
+  evaluate<R, NZ>(reinterpret_cast<LaneForm<R, NZ>&>(form), t, y, d);
 }
 
 /// Whether nothing overflows at the end of a step and in what is read of it: what a row tells of energy has the size of
@@ -98,15 +104,32 @@ CLUTCHWORK_INLINE void visit_lanes(void* form, void* step, F&& f) {
     return f(*static_cast<LaneForm<R, NZ>*>(form), *static_cast<Step<LaneForm<R, NZ>>*>(step));
   if constexpr (NZ < small_speeds) visit_lanes<R, NZ + 1>(form, step, f);
 }
+/// The same with the number of states, NS or more: half of a loop over so few numbers is counting.
+template <int R, int NZ, int NS = 0, class F>
+CLUTCHWORK_INLINE void visit_states(LaneForm<R, NZ>& form, Step<LaneForm<R, NZ>>& step, F&& f) {
+  if (form.ns() == NS)
+    return f(reinterpret_cast<LaneForm<R, NZ, NS>&>(form), reinterpret_cast<Step<LaneForm<R, NZ, NS>>&>(step));
+  if constexpr (NS < small_states) visit_states<R, NZ, NS + 1>(form, step, f);
+}
+
+/// Row k of so many in the step of each lane.
+template <int R>
+struct LaneRow {
+  std::int64_t k, parts;
+  Lanes<R> end;   ///< [s] of the step
+  Lanes<R> time;  ///< [s] at which the row stands: it is found
+};
 
 /// What is compiled once for each width of registers. The lanes are in memory alike for all of them.
 template <int R>
 struct LaneStep {
   /// One step of all lanes; their errors, and whether their new states are finite.
   static void advance(void* form, void* step, void* error, void* finite) {
-    visit_lanes<R>(form, step, [&](auto& f, auto& s) {
-      *static_cast<Lanes<R>*>(error) = Rodas5P::advance(f, s, s.h);
-      *static_cast<Mask<R>*>(finite) = all_finite(f.n(), s.y1());
+    visit_lanes<R>(form, step, [&](auto& any, auto& at) {
+      visit_states(any, at, [&](auto& f, auto& s) {
+        *static_cast<Lanes<R>*>(error) = Rodas5P::advance(f, s, s.h);
+        *static_cast<Mask<R>*>(finite) = all_finite(f.n(), s.y1());
+      });
     });
   }
   /// Derivatives and guards at its end, at these times.
@@ -120,11 +143,13 @@ struct LaneStep {
     *static_cast<Mask<R>*>(doubtful) =
         doubtful_inline(static_cast<LaneForm<R>*>(form)->ws, static_cast<Step<LaneForm<R>>*>(step)->h);
   }
-  /// What is read of a row at a share of the step of each lane, after `fit`; lanes in which it is finite.
-  static void observe(void* form, void* step, const void* share, void* sound) {
+  /// What is read of a LaneRow, after `fit`; lanes in which it is finite.
+  static void observe(void* form, void* step, void* row, void* sound) {
     auto& f = *static_cast<LaneForm<R>*>(form);
     auto& s = *static_cast<Step<LaneForm<R>>*>(step);
-    observe_some(f, s, *static_cast<const Lanes<R>*>(share), f.ws.out.seen, f.ws.out.n_seen);
+    auto& at = *static_cast<LaneRow<R>*>(row);
+    const Lanes<R> share = share_of_row(at.k, at.parts, s.t, s.h, Lanes<R>(1), at.end, at.time);
+    observe_some(f, s, share, f.ws.out.seen, f.ws.out.n_seen);
     if (f.ws.out.carried) multipliers(f.ws, f.ws.observed.torque, true, f.ws.observed.carried);
     // a row adds what is held to nothing
     for (int a = 0; f.ws.out.carried && a < f.ws.held.n; ++a) f.ws.observed.carried[a] += Lanes<R>(0);
@@ -145,7 +170,7 @@ struct LaneKernel {
   void (*advance)(void* form, void* step, void* error, void* finite);
   void (*linearize_at)(void* form, void* step, const void* times);
   void (*doubt)(void* form, void* step, void* doubtful);
-  void (*observe)(void* form, void* step, const void* share, void* sound);
+  void (*observe)(void* form, void* step, void* row, void* sound);
   void (*fit)(void* form, void* step, void* sound);
 };
 

@@ -26,7 +26,8 @@ class Together {
   const ReadNumbers read_, inside_;  ///< what is read of them
   int n_active_ = 0;
   bool active_[n_lanes] = {}, counts_[n_lanes] = {}, visited_[n_lanes] = {};
-  bool alone_[n_lanes] = {};  ///< what happens in its step is left to its phase
+  bool alone_[n_lanes] = {};       ///< what happens in its step is left to its phase
+  bool wants_more_[n_lanes] = {};  ///< than the lanes give, in every step
 
  public:
   /// Phases that have begun, all in one mode; `first` is one of those that are there.
@@ -74,6 +75,7 @@ class Together {
     active_[i] = i == like;
     n_active_ += active_[i];
     ws_.run[i] = active_[i] ? &one.ws_ : nullptr;
+    wants_more_[i] = wants_more(one);
     put_motion(ws_, one.ws_, i);
     load(one, i);
     step_.t[i] = end_[i] = one.ws_.time, step_.h[i] = one.h_;
@@ -191,7 +193,7 @@ class Together {
     kernel_.doubt(&form_, &step_, &doubtful);
     bool work = false, rows = false;
     for (int i = 0; i < n_lanes; ++i) {
-      alone_[i] = !active_[i] || !counts_[i] || is_left_alone(pace(i));
+      alone_[i] = !active_[i] || !counts_[i] || is_left_alone(i);
       if (alone_[i]) continue;
       work = work || (has_work(run_of(i)) && ws_.out.n_worked > 0);
       rows = rows || parts_ > 0;
@@ -212,18 +214,22 @@ class Together {
     pass_on();
   }
 
-  /// Whether what is wanted of a step is more than the lanes give.
-  bool is_left_alone(const StepSize<double>& one) const {
+  /// Whether what is wanted of any step is more than the lanes give.
+  bool wants_more(const StepSize<double>& one) const {
     const Workspace<double>& run = one.ws_;
     const bool others = run.sys.prescribed + run.sys.supplies + run.sys.meters > 0;
-    if (has_angles(run) ||
-        (has_work(run) && (others || (run.out.read.place != read_.place || run.out.read.n != read_.n))))
-      return true;
-    if (one.sink_.steps != parts_) return true;
+    const bool other_work = others || run.out.read.place != read_.place || run.out.read.n != read_.n;
+    return has_angles(run) || (has_work(run) && other_work) || one.sink_.steps != parts_ ||
+           (parts_ > 0 && (run.out.inside.place != inside_.place || run.out.inside.n != inside_.n));
+  }
+
+  /// Whether what is wanted of the step of a lane is more than that.
+  bool is_left_alone(int i) {
+    const StepSize<double>& one = pace(i);
+    if (wants_more_[i]) return true;
     if (parts_ == 0) return one.has_rows(1);
     // rows at knots are compared with those behind them
-    return !ws_.out.rows || one.cut_ || run.out.inside.place != inside_.place || run.out.inside.n != inside_.n ||
-           one.reach_ < shortest_with_rows * (1 + abs(one.end_of_step()));
+    return !ws_.out.rows || one.cut_ || one.reach_ < shortest_with_rows * (1 + abs(one.end_of_step()));
   }
   // far above what the time can tell apart
   static constexpr double shortest_with_rows = 1e-11;
@@ -250,16 +256,15 @@ class Together {
   /// Row k of each step.
   void write_rows(std::int64_t k) {
     Mask<2> sound;
-    Lanes<2> t;
-    const Lanes<2> share = share_of_row(k, parts_, step_.t, step_.h, Lanes<2>(1), end_, t);
-    kernel_.observe(&form_, &step_, &share, &sound);
+    LaneRow<2> row{k, parts_, end_, end_};
+    kernel_.observe(&form_, &step_, &row, &sound);
     for (int i = 0; i < n_lanes; ++i) {
       alone_[i] = alone_[i] || !sound[i];
       if (alone_[i]) continue;
       const Sink& sink = pace(i).sink_;
       const std::int64_t at = sink.at + k - 1;
-      sink.times[at] = t[i];
-      write_row(run_of(i), ws_.out, step_, i, t[i], sink.rows + run_of(i).row.size * at);
+      sink.times[at] = row.time[i];
+      write_row(run_of(i), ws_.out, step_, i, row.time[i], sink.rows + run_of(i).row.size * at);
     }
   }
 

@@ -151,8 +151,8 @@ CLUTCHWORK_INLINE Lanes<R> rate_size(const Workspace<Lanes<R>>& ws, int k, const
   return sum;
 }
 
-/// The small form of the lanes. NZ: number of speeds where the compiler knows it, else -1.
-template <int R, int NZ = -1>
-using LaneForm = SmallForm<Lanes<R>, NZ>;
+/// The small form of the lanes. NZ, NS: numbers of speeds and of states where the compiler knows them, else -1.
+template <int R, int NZ = -1, int NS = -1>
+using LaneForm = SmallForm<Lanes<R>, NZ, NS>;
 
 }  // namespace clutchwork

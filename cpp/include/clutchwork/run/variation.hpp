@@ -7,6 +7,7 @@
 #include <clutchwork/run/output.hpp>
 #include <clutchwork/run/step.hpp>
 #include <clutchwork/run/step_calls.hpp>
+#include <clutchwork/run/step_size.hpp>
 #include <clutchwork/workspace.hpp>
 
 #include <utility>
@@ -208,7 +209,7 @@ class Variation {
       from_ = from, to_ = to, share_ = h / step.h;
       const double error = vary<X>(h);
       const bool kink = error > 1 && error < 1e300 && h <= shortest();
-      const double growth = kink ? 6 : 0.9 * pow(larger(error, 1e-10), -0.2);
+      const double growth = kink ? 6 : 0.9 * fifth_root_of_inverse(larger(error, 1e-10));
       if (error <= 1 || kink) {
         // one that was cut says nothing of longer ones
         ws_.moved.pace = last ? larger(pace, h * smaller(6.0, growth)) : h * smaller(6.0, growth);
