@@ -131,7 +131,7 @@ std::int64_t cw_adjoint_numbers(const cw_adjoint* run) { return run == nullptr ?
 
 int cw_adjoint_back(const cw_adjoint* run, double* adjoint) {
   if (run == nullptr || adjoint == nullptr || run->tape.is_full()) return 0;
-  run->tape.back(adjoint);
+  run->tape.back(adjoint, LinearRecord::back);
   return 1;
 }
 
