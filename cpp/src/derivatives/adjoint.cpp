@@ -9,6 +9,8 @@
 #include "../system_checks.hpp"
 #include "lifted.hpp"
 
+#include <clutchwork/run/linear_record.hpp>
+
 using namespace clutchwork;
 
 /// A run that notes on a tape how its numbers came about, and where it lives.

@@ -117,4 +117,7 @@ class LinearRecord {
   }
 };
 
+template <>
+struct StepRecord<Taped> : LinearRecord {};
+
 }  // namespace clutchwork

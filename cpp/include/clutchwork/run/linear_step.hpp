@@ -104,6 +104,10 @@ void take_columns(int n, FewColumns<N, R>& to, F&& f) {
   }
 }
 
+/// What a tape keeps of a step: run/linear_record.hpp. Numbers that carry their derivatives have none.
+template <class T>
+struct StepRecord {};
+
 /// The matrices of a step of n numbers.
 template <int N, int R>
 struct LinearStep {

@@ -3,7 +3,6 @@
 #include <clutchwork/motion/dynamics.hpp>
 #include <clutchwork/run/integrator/memory.hpp>
 #include <clutchwork/run/integrator/rodas5p.hpp>
-#include <clutchwork/run/linear_record.hpp>
 #include <clutchwork/run/linear_step.hpp>
 #include <clutchwork/run/linear_terms.hpp>
 #include <clutchwork/run/mirror.hpp>
@@ -56,7 +55,7 @@ class Variation {
   LinearStep<very_few, lanes> smallest_;  ///< matrices of a part, of so few numbers
   LinearStep<few, lanes> small_;
   bool mass_known_ = false;  ///< to them, of the present phase
-  LinearRecord record_;      ///< of the part that is tried, for the tape
+  StepRecord<T> record_;     ///< of the part that is tried, for the tape
 
  public:
   Plain form;
