@@ -9,6 +9,8 @@
 #include "../system_checks.hpp"
 #include "lifted.hpp"
 
+#include <clutchwork/run/linear_record.hpp>
+
 using namespace clutchwork;
 
 /// A run that notes on a tape how its numbers came about, and where it lives.
@@ -131,7 +133,7 @@ std::int64_t cw_adjoint_numbers(const cw_adjoint* run) { return run == nullptr ?
 
 int cw_adjoint_back(const cw_adjoint* run, double* adjoint) {
   if (run == nullptr || adjoint == nullptr || run->tape.is_full()) return 0;
-  run->tape.back(adjoint);
+  run->tape.back(adjoint, LinearRecord::back);
   return 1;
 }
 

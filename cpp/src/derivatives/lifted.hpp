@@ -88,6 +88,7 @@ void begin_lifted(Workspace<T>& ws) {
     ws.in.signal[i] = SignalOf<T>{};
     ws.in.signal[i].held = ws.sys.input_value[i];
   }
+  mark_moving(ws);
 }
 
 }  // namespace clutchwork

@@ -9,7 +9,7 @@ namespace clutchwork {
 template <int N, int R = 2>
 struct Tangent {
   typedef double Part __attribute__((vector_size(8 * R)));
-  static constexpr int kept = N, seen = N, parts = N / R;
+  static constexpr int kept = N, seen = N, parts = N / R, lanes = R;
   using Widest = Slopes<N, R>;  ///< its derivatives alone
   alignas(8 * R) Part part[parts]{};
   double v = 0;
@@ -127,6 +127,7 @@ struct SlopesAs<Tangent<N, R>, Slopes<N, R>> {
     return x;
   }
   static CLUTCHWORK_HOT const Seen& seen(const X& slopes) { return slopes; }
+  static CLUTCHWORK_HOT Seen seen_of(const T& x) { return of(x); }
   static CLUTCHWORK_HOT double at(const Seen& slopes, int j) { return slopes.part[j / R][j % R]; }
 };
 template <int N, int R>
@@ -142,6 +143,7 @@ struct SlopesAs<Tangent<N, R>, double> {
     return x;
   }
   static CLUTCHWORK_HOT double seen(double slope) { return slope; }
+  static CLUTCHWORK_HOT double seen_of(const T& x) { return of(x); }
   static CLUTCHWORK_HOT double at(double slope, int) { return slope; }
 };
 

@@ -42,12 +42,47 @@ class Tape {
     for (int j = 2; j < n; j += 2) node_[n_++] = {~id[j], id[j + 1], by[j], by[j + 1]};
     return n_ - 1;
   }
+  /// Numbers that follow from others in their own way, of which `bytes` are kept; null: the tape is full. `first`: the
+  /// first of them.
+  void* block(std::int64_t bytes, int results, std::int32_t& first) {
+    const auto nodes = std::int32_t((bytes + std::int64_t(sizeof(Node)) - 1) / std::int64_t(sizeof(Node)));
+    first = 0;
+    if (n_ + nodes + results + 1 >= room_) return full_ = true, nullptr;
+    auto* kept = reinterpret_cast<Block*>(node_ + n_);
+    *kept = {block_, n_ + 1 + nodes, results, {}};
+    block_ = n_, first = kept->first, n_ = first + results;
+    return kept + 1;
+  }
   bool is_full() const { return full_; }
   std::int32_t size() const { return n_; }
 
-  /// Derivatives of what has been seeded by all numbers, in place.
-  void back(double* adjoint) const {
-    for (std::int32_t i = n_ - 1; i > 0; --i) {
+  /// Derivatives of what has been seeded by all numbers, in place. `own`: of a block, from those of its results.
+  template <class F>
+  void back(double* adjoint, F&& own) const {
+    std::int32_t end = n_;
+    for (std::int32_t at = block_; at > 0;) {
+      const auto* kept = reinterpret_cast<const Block*>(node_ + at);
+      back(adjoint, end, kept->first + kept->results);
+      own(kept + 1, adjoint + kept->first, adjoint);
+      end = at, at = kept->before;
+    }
+    back(adjoint, end, 1);
+  }
+
+  /// The tape on which this thread writes, null: none.
+  static CLUTCHWORK_HOT Tape*& current() { return at_work; }
+
+ private:
+  /// Before what is kept of a block, in place of a node.
+  struct Block {
+    std::int32_t before;  ///< the block before, 0: none
+    std::int32_t first, results;
+    std::int32_t unused[3];
+  };
+  static_assert(sizeof(Block) == sizeof(Node));
+
+  void back(double* adjoint, std::int32_t end, std::int32_t first) const {
+    for (std::int32_t i = end - 1; i >= first; --i) {
       double x = adjoint[i];
       if (x == 0) continue;
       // a sum goes on in the node before it; what a constant gets is not looked at
@@ -62,14 +97,11 @@ class Tape {
     }
   }
 
-  /// The tape on which this thread writes, null: none.
-  static CLUTCHWORK_HOT Tape*& current() { return at_work; }
-
- private:
   static constexpr std::int64_t most = (1ll << 31) - 2;
   static inline thread_local constinit Tape* at_work CLUTCHWORK_NEAR = nullptr;
   Node* node_ = nullptr;
   std::int32_t room_ = 0, n_ = 1;  // number 0 stands for constants
+  std::int32_t block_ = 0;         // the last one
   bool full_ = false;
 };
 
@@ -79,7 +111,7 @@ struct TapedSum;
 struct Taped {
   double v = 0, probe = 0;
   std::int32_t id = 0;
-  static constexpr int kept = 1, seen = 1;
+  static constexpr int kept = 1, seen = 1, lanes = 2;
   using Widest = TapedSum;  ///< its derivatives alone
 
   Taped() = default;
@@ -228,6 +260,7 @@ struct SlopesAs<Taped, TapedSum> {
     return x;
   }
   static double seen(const TapedSum& slopes) { return slopes.probe; }
+  static double seen_of(const Taped& x) { return x.probe; }
   static double at(double seen, int) { return seen; }
 };
 

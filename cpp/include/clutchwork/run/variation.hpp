@@ -3,8 +3,11 @@
 #include <clutchwork/motion/dynamics.hpp>
 #include <clutchwork/run/integrator/memory.hpp>
 #include <clutchwork/run/integrator/rodas5p.hpp>
+#include <clutchwork/run/linear_step.hpp>
+#include <clutchwork/run/linear_terms.hpp>
 #include <clutchwork/run/mirror.hpp>
 #include <clutchwork/run/output.hpp>
+#include <clutchwork/run/slopes_along.hpp>
 #include <clutchwork/run/step.hpp>
 #include <clutchwork/run/step_calls.hpp>
 #include <clutchwork/run/step_size.hpp>
@@ -33,6 +36,7 @@ class Variation {
   using Plain = typename PlainForm<Form>::type;
   template <class X>
   using As = SlopesAs<T, X>;
+  static constexpr int few = 8, very_few = 4, lanes = T::lanes;
   // of a part: how far ahead the change of the slopes with time is looked at, twice; loose tolerances need one look
   static constexpr double ahead = 1e-3, loose = 1e-8;
   // a direction may miss so much of itself in a part, of rtol: the error of the motion moves derivatives by more
@@ -45,16 +49,23 @@ class Variation {
   double from_ = 0, to_ = 1, share_ = 1;  ///< present part of the plain step, and its length
   // shares of the step at which the image has been linearized: at its Jacobian, and at the other one; -1: elsewhere
   double at_ = -1, other_at_ = -1;
-  bool is_whole_ = false;                      ///< the image has the factor of the whole step
-  bool known_ = false;                         ///< the slopes at the start of the next part
-  const double look_once_;                     ///< of a part, ahead of its start
-  double reached_[T::seen] = {};               ///< sizes of the directions up to the end of the part that is tried
-  bool rows_move_ = true, mass_moves_ = true;  ///< with the numbers of the model
+  bool is_whole_ = false;                 ///< the image has the factor of the whole step
+  bool known_ = false;                    ///< the slopes at the start of the next part
+  const double look_once_;                ///< of a part, ahead of its start
+  double reached_[T::seen] = {};          ///< sizes of the directions up to the end of the part that is tried
+  LinearStep<very_few, lanes> smallest_;  ///< matrices of a part, of so few numbers
+  LinearStep<few, lanes> small_;
+  bool mass_known_ = false;  ///< to them, of the present phase
+  StepRecord<T> record_;     ///< of the part that is tried, for the tape
 
  public:
   Plain form;
   Step<Plain> step;
 
+ private:
+  SlopesAlong<Form, Plain> slopes_;
+
+ public:
   Variation(Form& own, Step<Form>& own_step)
       : form_(own),
         step_(own_step),
@@ -67,7 +78,8 @@ class Variation {
                Rodas5P::restart},
         look_once_(1e-2 * pow(own.ws.options.rtol, 0.4)),
         form(prepared(own.ws)),
-        step(form) {
+        step(form),
+        slopes_(own, own_step, form, step) {
     step.calls = &calls_;
   }
 
@@ -75,10 +87,9 @@ class Variation {
   void reflect_here() {
     reflect(ws_, *ws_.moved.plain, false);
     form.mass_factored = false;
-    rows_move_ = moves(ws_.rows.rate.val, ws_.rows.rate.first[ws_.n_branches]);
-    mass_moves_ = moves(ws_.rows.mass.val, ws_.rows.mass.first[form.nz()]);
+    slopes_.reflect();
     take_values(step_.y0(), form.n(), step.y0());
-    known_ = false;
+    known_ = mass_known_ = false;
     linearize_start();
   }
   void linearize_start() {
@@ -139,6 +150,9 @@ class Variation {
   /// As Rodas5P::advance, to the same bits, with sums of stages of which each has its own length.
   double plain_step(double h) {
     if (!Rodas5P::factor(form, 1 / (Rodas5P::gamma * h))) return infinity;
+    if constexpr (!Form::full) {
+      if (is_few()) return form.n() <= very_few ? plain_step_with(smallest_, h) : plain_step_with(small_, h);
+    }
     const int n = form.n();
     double *u = step.u(), *mix = step.slope();
     step.h = h, step.dense = false;
@@ -159,18 +173,56 @@ class Variation {
     return error_norm(form, step.k(7), step.y0(), step.y1());
   }
 
+  /// The same for few numbers, by the inverse.
+  template <int N>
+  [[gnu::noinline]] double plain_step_with(LinearStep<N, lanes>& linear, double h) {
+    using S = OneDirection<N, lanes>;
+    const int n = form.n();
+    step.h = h, step.dense = false;
+    take_mass(linear), take_inverse(linear);
+    S start, drift, slope, k[8], u;
+    for (int i = 0; i < n; ++i) start.put(i, step.y0()[i]), drift.put(i, h * step.dt0()[i]);
+    for (int i = 0; i < n; ++i) slope.put(i, step.f0()[i]);
+    LinearStep<N, lanes>::each_stage([&](auto stage) CLUTCHWORK_HOT_LAMBDA {
+      constexpr int s = stage.value;
+      if constexpr (s > 0) {
+        LinearStep<N, lanes>::template point<s>(start, k, u);
+        evaluate(form, step.t + Rodas5P::node[s] * h, u.data(), slope.data());
+      } else {
+        u = start;
+      }
+      linear.template solve<s>(h, drift, slope, k);
+    });
+    form.ws.statistics.evaluations += 7;
+    for (int s = 0; s < 8; ++s) {
+      for (int i = 0; i < n; ++i) step.k(s)[i] = k[s].get(i);
+    }
+    for (int i = 0; i < n; ++i) step.y1()[i] = u.get(i) + k[7].get(i);
+    return error_norm(form, step.k(7), step.y0(), step.y1());
+  }
+  template <int N>
+  void take_mass(LinearStep<N, lanes>& linear) {
+    if (mass_known_) return;
+    linear.n = form.n(), mass_known_ = true;
+    take_columns(linear.n, linear.mass, [&](const auto* x, auto* y) {
+      form.add_mass_times(1.0, x, y);
+      for (int i = form.nz(); i < form.n(); ++i) y[i] += x[i];
+    });
+  }
+  /// Where the image has the factor and the Jacobian of the start.
+  template <int N>
+  void take_inverse(LinearStep<N, lanes>& linear) {
+    take_columns(linear.n, linear.inverse, [&](const auto* x, auto* y) {
+      for (int i = 0; i < form.n(); ++i) y[i] = x[i];
+      Rodas5P::solve(form, y, y);
+    });
+  }
+
   static Workspace<double>& prepared(Workspace<T>& ws) {
     reflect(ws, *ws.moved.plain, true);
     return *ws.moved.plain;
   }
 
-  /// Whether any of n numbers has derivatives.
-  static bool moves(const T* x, int n) {
-    for (int i = 0; i < n; ++i) {
-      if (!is_constant(x[i])) return true;
-    }
-    return false;
-  }
   /// Speeds are brought back onto ties after a part.
   bool has_ties() const { return Form::full && ws_.ratios.n > 0; }
 
@@ -205,9 +257,8 @@ class Variation {
       const double to = last ? until : from + h / step.h;
       if (!(h > 1e-14 * larger(1e-2, abs(step.t)))) return last ? leap(from, until) : -1;
       if (!prepare(from, h)) return -1;
-      linearize_at(to, end);
       from_ = from, to_ = to, share_ = h / step.h;
-      const double error = vary<X>(h);
+      const double error = is_few() ? vary_few<X>(h, end) : vary<X>(h, end);
       const bool kink = error > 1 && error < 1e300 && h <= shortest();
       const double growth = kink ? 6 : 0.9 * fifth_root_of_inverse(larger(error, 1e-10));
       if (error <= 1 || kink) {
@@ -215,6 +266,7 @@ class Variation {
         ws_.moved.pace = last ? larger(pace, h * smaller(6.0, growth)) : h * smaller(6.0, growth);
         // a part that counts for nothing may end anywhere
         for (int j = 0; j < As<X>::count; ++j) ws_.moved.size[j] = reached_[j];
+        if (is_few()) keep_few<X>();
         for (int i = 0; i < form.n(); ++i) row<X>(SlopeRow::first)[i] = row<X>(SlopeRow::last)[i];
         known_ = !has_ties();
         set_values();
@@ -270,6 +322,9 @@ class Variation {
   /// The derivatives of its interpolant.
   template <class X>
   void fit_slopes() {
+    if constexpr (!std::is_same_v<X, typename As<X>::Seen>) {
+      if (is_few()) return record_.fit(step_);
+    }
     for (int q = 0; q < 3; ++q) {
       for (int i = 0; i < form.n(); ++i) {
         X x = X(0);
@@ -296,92 +351,11 @@ class Variation {
     for (int a = 0; a < ws_.held.n; ++a) to.multiplier[a] = T(from.multiplier[a]);
   }
 
-  /// Derivatives of the slopes at the share s of the present part of the step, where those of the state are `y`, into
-  /// `d`.
+  /// Derivatives of the slopes at the share s of the present part, where those of the state are `y`, into `d`.
   template <class X>
-  [[gnu::noinline]] void slopes_at(double s, const X* y, X* d) {
-    const double at = from_ + s * share_, t = step.t + at * step.h;
-    const bool all = Form::full || rows_move_ || ws_.sys.shared > 0;
-    T *whole = step_.point(), *made = step_.p(2);
-    interpolate(form, step, at, step.point());
-    for (int i = all ? 0 : form.nz(); i < form.n(); ++i) whole[i] = As<X>::number(step.point()[i], y[i]);
-    if (all) {
-      evaluate(form_, t, whole, made);
-      for (int i = 0; i < form.n(); ++i) d[i] = As<X>::of(made[i]), step.slope()[i] = value(made[i]);
-    } else {
-      evaluate_over_plain_rows(t, whole, y, d);
-    }
-    if (mass_moves_) take_from_mass(d);
+  void slopes_at(double s, const X* y, X* d) {
+    slopes_.at(from_ + s * share_, y, d, false);
   }
-  /// As evaluate, where the rows of the branches have no derivatives. The slopes themselves go to step.slope().
-  template <class X>
-  void evaluate_over_plain_rows(double t, const T* whole, const X* y, X* d) {
-    const int nz = form.nz();
-    T* own = step_.p(2);
-    double* plain = step.slope();
-    inputs_with(ws_, t, whole + nz);
-    for (int i = 0; i < form.n(); ++i) d[i] = X(0);
-    for (int i = nz; i < form.n(); ++i) own[i] = T(0);
-    for (int i = 0; mass_moves_ && i < form.n(); ++i) plain[i] = 0;
-    for (int k = 0; k < ws_.n_branches; ++k) {
-      T rate = As<X>::number(form.rate(k, step.point()), form.rate(k, y));
-      if (ws_.sys.prescribed > 0) rate += offset_rate(ws_, k);
-      const T torque = branch_torque(ws_, ws_.branch[k], rate, whole + nz, own + nz);
-      form.push(k, As<X>::of(torque), d);
-      if (mass_moves_) form.push(k, value(torque), plain);
-    }
-    for (int i = nz; i < form.n(); ++i) d[i] = As<X>::of(own[i]);
-  }
-  /// What a mass that changes takes of the slopes.
-  template <class X>
-  void take_from_mass(X* d) {
-    double* velocity = step.slope();
-    form.solve_mass(velocity);
-    T *moved = step_.slope(), *taken = step_.p(2);
-    for (int i = 0; i < form.nz(); ++i) {
-      const bool massless = ws_.rows.mass.first[i] == ws_.rows.mass.first[i + 1];
-      moved[i] = T(massless ? 0.0 : velocity[i]), taken[i] = T(0);
-    }
-    form_.add_mass_times(T(-1), moved, taken);
-    for (int i = 0; i < form.nz(); ++i) d[i] += As<X>::of(taken[i]);
-  }
-
-  /// d := d + J x, with J where the image has been linearized last.
-  template <class X>
-  [[gnu::noinline]] void add_linear(const X* x, X* d) {
-    const Workspace<double>& ws = form.ws;
-    const Jacobian<double>& j = ws.jacobian;
-    const int n = form.n(), nz = form.nz(), nx = int(ws.sys.shared);
-    if constexpr (Form::full) {
-      for (int i = 0; i < n; ++i) add_row(n, ws.full.jacobian + i * n, x, d[i]);
-      return;
-    }
-    const X *own = x + nz, *shared = x + n - nx;
-    for (int k = 0; k < ws.n_branches; ++k) {
-      const Branch<double>& b = ws.branch[k];
-      const X rate = form.rate(k, x);
-      X torque = rate * j.partial[k].by_rate;
-      add_row(b.states, j.f_state + b.state, own + b.state, torque);
-      add_row(nx, j.torque_by + k * nx, shared, torque);
-      form.push(k, torque, d);
-      for (int s = 0; s < b.states; ++s) {
-        X& to = d[nz + b.state + s];
-        add_times(j.g_rate[b.state + s], rate, to);
-        add_row(b.states, j.g_state + j.block[k] + s * b.states, own + b.state, to);
-      }
-    }
-    for (int i = 0; i < nx; ++i) {
-      d[n - nx + i] += border_times(form, i, x);
-      add_row(nx, j.by_shared + i * nx, shared, d[n - nx + i]);
-    }
-  }
-  template <class X>
-  static void add_row(int n, const double* row, const X* x, X& to) {
-    for (int i = 0; i < n; ++i) {
-      if (row[i] != 0) add_times(row[i], x[i], to);
-    }
-  }
-
   /// Change of the slopes with time along the motion at the start of a part of length h: to first order close by where
   /// that is all that the tolerance sees, else to second order. docs/theory/gradients.md (20)
   template <class X>
@@ -403,8 +377,9 @@ class Variation {
   /// The derivatives at the end of a part of the step of length h; their error in units of the tolerance.
   /// docs/theory/gradients.md (20)
   template <class X>
-  double vary(double h) {
+  double vary(double h, double end) {
     const int n = form.n();
+    linearize_at(to_, end);
     step_.t = step.t + from_ * step.h, step_.h = h, step_.dense = false;
     X *start = row<X>(SlopeRow::start), *u = row<X>(SlopeRow::u), *drift = row<X>(SlopeRow::drift);
     X *first = row<X>(SlopeRow::first), *last = row<X>(SlopeRow::last);
@@ -430,7 +405,98 @@ class Variation {
     add_linear_at_end(missed, last);
     swap_jacobians();
     for (int i = 0; i < n; ++i) u[i] += missed[i], step_.y1()[i] = As<X>::number(0, u[i]);
-    return error_of(missed, u);
+    return error_of<X>([&](int i) { return As<X>::seen(missed[i]); }, [&](int i) { return As<X>::seen(u[i]); });
+  }
+
+  // -------------------------------------------------------------------------------------------------- of few numbers
+
+  /// Whether a part is taken with matrices of all numbers.
+  bool is_few() const { return !Form::full && form.n() <= few && ws_.sys.shared == 0; }
+
+  /// Where the slopes by the numbers of the model alone are kept, at the instants of a part at which they are known.
+  template <class X>
+  struct Loads {
+    X* at[Lobatto::count];
+  };
+  template <class X>
+  Loads<X> load_rows() {
+    return {{row<X>(SlopeRow::first), row<X>(LoadRow::second), row<X>(LoadRow::third), row<X>(LoadRow::fourth),
+             row<X>(SlopeRow::last)}};
+  }
+
+  /// As vary, with the equations as a quartic between five instants. docs/theory/gradients.md (23)
+  template <class X>
+  double vary_few(double h, double end) {
+    if constexpr (Form::full) return infinity;
+    return form.n() <= very_few ? vary_with<X>(smallest_, h, end) : vary_with<X>(small_, h, end);
+  }
+  template <class X, int N>
+  [[gnu::noinline]] double vary_with(LinearStep<N, lanes>& linear, double h, double end) {
+    using Seen = typename As<X>::Seen;
+    using S = std::conditional_t<std::is_same_v<Seen, double>, OneDirection<N, lanes>, ManyDirections<N, lanes>>;
+    const int n = form.n();
+    const Loads<X> loads = load_rows<X>();
+    step_.t = step.t + from_ * step.h, step_.h = h, step_.dense = false;
+    linearize_part(linear, h, end);
+    X* still = row<X>(SlopeRow::start);
+    for (int i = 0; i < n; ++i) still[i] = X(0);
+    S start{}, load[Lobatto::count]{}, k[8], last;
+    for (int m = 0; m < Lobatto::count; ++m) {
+      if (m > 0 || !known_) slopes_.at(from_ + Lobatto::node[m] * share_, still, loads.at[m], true);
+      for (int i = 0; i < n; ++i) load[m].put(i, As<X>::seen(loads.at[m][i]));
+    }
+    known_ = true;
+    for (int i = 0; i < n; ++i) start.put(i, As<X>::seen_of(step_.y0()[i]));
+    linear.take(start, load, k, last);
+    if constexpr (std::is_same_v<X, Seen>) {
+      for (int s = 0; s < 8; ++s) {
+        for (int i = 0; i < n; ++i) row<X>(s)[i] = k[s].get(i);
+      }
+      for (int i = 0; i < n; ++i) step_.y1()[i] = As<X>::number(0, last.get(i));
+    } else {
+      record_.take(n, k, last);
+    }
+    return error_of<X>([&](int i) { return k[7].get(i); }, [&](int i) { return last.get(i); });
+  }
+
+  /// The matrices of a part of length h; the image has the factor of its start, and is linearized at its end.
+  template <int N>
+  void linearize_part(LinearStep<N, lanes>& linear, double h, double end) {
+    linear.h = h;
+    auto by_state = [&](const auto* x, auto* y) { add_linear(form, x, y); };
+    swap_jacobians();
+    if (!known_) take_columns(linear.n, linear.known[0], by_state);
+    // that of the whole step is known
+    if (!is_whole_) take_inverse(linear);
+    for (int m = 1; m < Lobatto::count - 1; ++m) {
+      linearize_inside(from_ + Lobatto::node[m] * share_);
+      take_columns(linear.n, linear.known[m], by_state);
+    }
+    swap_jacobians();
+    linearize_at(to_, end);
+    take_columns(linear.n, linear.known[Lobatto::count - 1], by_state);
+    linear.prepare();
+  }
+  /// Its derivatives alone, at a share of the step; what the guards know of its end stays.
+  void linearize_inside(double share) {
+    StepEnd<double> inside = form.ws.step_end;
+    inside.rate = ws_.moved.rates;
+    interpolate(form, step, share, step.point());
+    linearize(form, step.t + share * step.h, step.point(), step.u(), step.slope(), inside);
+    at_ = share;
+  }
+
+  /// What is known of the end of a part that counts serves the next one; a tape gets a note of the part.
+  template <class X>
+  void keep_few() {
+    form.n() <= very_few ? keep_matrices<X>(smallest_) : keep_matrices<X>(small_);
+  }
+  template <class X, int N>
+  void keep_matrices(LinearStep<N, lanes>& linear) {
+    if constexpr (!std::is_same_v<X, typename As<X>::Seen>) {
+      record_.note(linear, step_.y0(), load_rows<X>().at, step_.y1());
+    }
+    linear.known[0] = linear.known[Lobatto::count - 1];
   }
   template <class F, int... s>
   static void each_stage(F&& f, std::integer_sequence<int, s...>) {
@@ -448,7 +514,7 @@ class Variation {
   template <class X>
   void add_linear_at_end(const X* x, X* d) {
     swap_jacobians();
-    add_linear(x, d);
+    add_linear(form, x, d);
     swap_jacobians();
   }
   /// Where stage s begins, from the rows of those before.
@@ -478,9 +544,9 @@ class Variation {
     for (int i = nz; i < n; ++i) add_times(1 / h, mix[i], k[i]);
   }
 
-  /// Sizes of the components of each direction over those of the motion, to f(component, size of the motion).
-  template <class X, class F>
-  void each_component(const X* x, F&& f) const {
+  /// Sizes of the components x(i) of each direction over those of the motion, to f(component, size of the motion).
+  template <class X, class At, class F>
+  void each_component(At&& x, F&& f) const {
     const Workspace<double>& plain = form.ws;
     const int nv = int(plain.sys.speeds), nz = form.nz();
     const double least = plain.options.atol / plain.options.rtol;
@@ -488,12 +554,12 @@ class Variation {
     for (int i = 0; i < nv; ++i) fastest = larger(fastest, plain.reduced.size[i]);
     for (int i = 0; i < nv; ++i) {
       auto moved = typename As<X>::Seen(0);
-      each_share(form, i, [&](double z, int j) { moved += As<X>::seen(x[j]) * z; });
+      each_share(form, i, [&](double z, int j) { moved += x(j) * z; });
       f(moved, least + larger(plain.reduced.size[i], 1e-3 * fastest));
     }
     for (int i = 0; i < form.ns(); ++i) {
       const double most = larger(abs(step0(nz + i)), abs(step1(nz + i)));
-      f(As<X>::seen(x[nz + i]), plain.reduced.floor[i] / plain.options.rtol + most);
+      f(x(nz + i), plain.reduced.floor[i] / plain.options.rtol + most);
     }
   }
   double step0(int i) const { return const_cast<Step<Plain>&>(step).y0()[i]; }
@@ -501,16 +567,16 @@ class Variation {
 
   /// Error of the derivatives in units of the tolerance, each direction of the largest size that it has had.
   /// docs/theory/gradients.md (21)
-  template <class X>
-  double error_of(const X* missed, const X* end) {
+  template <class X, class Missed, class End>
+  double error_of(Missed&& missed, End&& end) {
     constexpr int seen = As<X>::count;
     double sum[seen] = {}, worst = 0;
     double* size = reached_;
     for (int j = 0; j < seen; ++j) size[j] = ws_.moved.size[j];
-    each_component(end, [&](const auto& x, double of) {
+    each_component<X>(end, [&](const auto& x, double of) {
       for (int j = 0; j < seen; ++j) size[j] = larger(size[j], abs(As<X>::at(x, j)) / of);
     });
-    each_component(missed, [&](const auto& x, double of) {
+    each_component<X>(missed, [&](const auto& x, double of) {
       for (int j = 0; j < seen; ++j) sum[j] += (As<X>::at(x, j) / of) * (As<X>::at(x, j) / of);
     });
     const double count = double(ws_.sys.speeds + form.ns());
