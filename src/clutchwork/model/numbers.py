@@ -73,7 +73,7 @@ def is_right(value: Any, spec: Spec) -> bool:
 
 
 def are_right(values: Sequence[Any], spec: Spec) -> bool:
-    """Whether plain numbers need no further look: bounds have nothing between them, so the least and the most tell."""
+    """Whether plain numbers need no further look: bounds are intervals, so the least and the most decide."""
     plain = bool(values) and {float}.issuperset(map(type, values)) and all(map(isfinite, values))
     return plain and is_right(min(values), spec) and is_right(max(values), spec)
 
