@@ -282,25 +282,6 @@ def test_a_follower_pushes_the_cam_against_a_brake():
     assert abs(run.energy.residual) <= 1e-8 * run.energy.turnover
 
 
-@pytest.mark.parametrize("braked", [False, True])
-def test_a_brake_on_a_follower_that_is_prescribed_takes_no_part(braked):
-    """The cam blocks its shaft one way; the other way the brake of the shaft holds up to its capacity."""
-    d = cw.Driveline("blocked")
-    a, m = d.shaft("a", inertia=SHAFT), d.mass("m", mass=MASS)
-    d.add(cw.Cam("cam", shaft=a, mass=m, lift=UNEVEN, phase=0.1))
-    d.add(cw.PrescribedPosition("held", shaft=m, position=float(spline(UNEVEN)(0.1))))
-    d.add(cw.Torque("turn", shaft=a, torque=cw.Ramp(height=-2.0, duration=1.0, offset=1.0)))
-    law = cw.Coulomb(static=1.0, kinetic=1.0)
-    d.add(cw.Brake("brake", shaft=a, friction=law, gain=0.5, normal_force=1.0, locked=True))
-    if braked:
-        d.add(cw.Brake("beside", shaft=m, friction=law, gain=1.0, normal_force=7.0, locked=True))
-    run = d.simulate(1.0, dt=0.01, rtol=1e-9)
-    (slips,) = [event for event in run.events.changes() if event.element == "brake"]
-    assert slips.time == pytest.approx(0.75, abs=EXACT)
-    held, lever = run.time < slips.time, float(spline(UNEVEN)(0.1, 1))
-    assert np.allclose((lever * run["cam.torque"] - run["brake.torque"])[held], 1.0 - 2.0 * run.time[held], atol=1e-9)
-
-
 def test_what_switches_elsewhere_does_not_lift_it():
     """Decisions in a long contact see a gap of exactly zero."""
     d, a = valve(speed=30.0, force=60.0)

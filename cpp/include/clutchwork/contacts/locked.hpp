@@ -191,12 +191,6 @@ bool varies(const Workspace<T>& ws, int c) {
   return false;
 }
 
-/// Whether prescribed speeds alone move the slip of a contact, through no transmission: nothing turns its direction.
-template <class T>
-bool is_still(const Workspace<T>& ws, int c) {
-  return value(ws.ratios.whole[ws.sys.elements + c]) == 0 && !varies(ws, c);
-}
-
 /// As list_independent beside transmissions, which come before all contacts: those whose directions vary are the last.
 /// One that prescribed speeds turn through a transmission is none of them: its slip moves with the ratio.
 template <class T>
@@ -205,7 +199,8 @@ void list_independent_beside(Workspace<T>& ws, int n) {
   h.n = 0;
   for (int varying = 0; varying < 2; ++varying) {
     for (int a = 0; a < n; ++a) {
-      if ((h.number[a] < 0 && !is_still(ws, h.all[a])) || int(varies(ws, h.all[a])) != varying) continue;
+      const bool rigid = varying == 0 && value(ws.ratios.whole[ws.sys.elements + h.all[a]]) == 0;
+      if ((h.number[a] < 0 && !rigid) || int(varies(ws, h.all[a])) != varying) continue;
       h.number[a] = h.n;
       h.contact[h.n++] = h.all[a];
     }
@@ -329,22 +324,18 @@ template <class T>
       for (int i = 0; i < nv; ++i) h.rows[row * nv + i] = T(0);
       ws.geometry.mass_weighted.add(ne + c, T(1), h.rows + row * nv);
     };
-    int n = 0;
-    for (int a = 0; a < h.n; ++a) {
-      if (!is_still(ws, h.contact[a])) lay(n, h.contact[a]), h.number[n++] = a;
-    }
-    for (int s = 0; s < h.n_redundant; ++s) lay(n + s, h.redundant[s]);
-    const int rank = orthonormal_split(n + h.n_redundant, nv, h.rows, h.basis, h.order, h.norms, n);
-    h.vanished = rank < n;
+    for (int a = 0; a < h.n; ++a) lay(a, h.contact[a]);
+    for (int s = 0; s < h.n_redundant; ++s) lay(h.n + s, h.redundant[s]);
+    const int rank = orthonormal_split(h.n + h.n_redundant, nv, h.rows, h.basis, h.order, h.norms, h.n);
+    h.vanished = rank < h.n;
     for (int s = 0; s < h.n_redundant && !h.vanished; ++s) {
-      resolve_direction(rank, nv, h.rows, h.order, h.rows + (n + s) * nv, h.share);
+      resolve_direction(rank, nv, h.rows, h.order, h.rows + (h.n + s) * nv, h.share);
       const double size = value(ws.geometry.own[ne + h.redundant[s]]);
       for (int b = 0; b < nc; ++b) h.tie[s * nc + b] = T(0);
       for (int j = 0; j < rank; ++j) {
         const T share = h.share[j];
-        const int a = h.number[h.order[j]];
-        const bool counts = value(share * share * ws.geometry.own[ne + h.contact[a]]) > 1e-18 * size;
-        if (counts) h.tie[s * nc + a] = share;
+        const bool counts = value(share * share * ws.geometry.own[ne + h.contact[h.order[j]]]) > 1e-18 * size;
+        if (counts) h.tie[s * nc + h.order[j]] = share;
       }
     }
   }
