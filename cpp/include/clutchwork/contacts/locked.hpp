@@ -288,7 +288,7 @@ void list_locked(Workspace<T>& ws) {
   h.too_many = h.vanished = false;
   if (ws.ratios.n == 0 && (!ws.geometry.redundant || n < 2)) return;
   if (is_few(ws.sys)) {
-    const int rank = split_held(ws, n);
+    const int rank = h.rank = split_held(ws, n);
     for (int a = 0; a < n; ++a) h.number[a] = -1;
     for (int j = 0; j < rank; ++j) h.number[h.order[j]] = 0;
     ws.ratios.n > 0 ? list_independent_beside(ws, n) : list_independent(ws, n);
@@ -327,7 +327,8 @@ template <class T>
     for (int a = 0; a < h.n; ++a) lay(a, h.contact[a]);
     for (int s = 0; s < h.n_redundant; ++s) lay(h.n + s, h.redundant[s]);
     const int rank = orthonormal_split(h.n + h.n_redundant, nv, h.rows, h.basis, h.order, h.norms, h.n);
-    h.vanished = rank < h.n;
+    // one between prescribed speeds had no direction before
+    h.vanished = rank < h.rank;
     for (int s = 0; s < h.n_redundant && !h.vanished; ++s) {
       resolve_direction(rank, nv, h.rows, h.order, h.rows + (h.n + s) * nv, h.share);
       const double size = value(ws.geometry.own[ne + h.redundant[s]]);
