@@ -230,6 +230,18 @@ def test_driven_from_rest_against_its_command_it_brakes_at_once(way, method):
     assert cw.squared_jerk("s").of(run) == 0.0
 
 
+@pytest.mark.parametrize("way", [1.0, -1.0])
+def test_driven_from_rest_it_loses_what_its_torque_there_does(way):
+    """The first row of a grid has the loss of the side to which it moves, not that of what it would drive with."""
+    d, watts = cw.Driveline("driven"), ((0.0, 10.0, 40.0), (0.0, 10.0, 40.0))
+    s = d.shaft("s", inertia=0.5)
+    d.add(cw.Torque("t", shaft=s, torque=way * 5.0))
+    lost = {"speeds": (0.0, 300.0), "torques": (0.0, 2.5, 4.0), "losses": watts}
+    d.add(cw.ElectricMotor("m", shaft=s, command=-way * 10.0, max_torque=3.0, generator_torque=2.0, **lost))
+    run = d.simulate(1.0, times=[0.0, 1.0])
+    assert run["m.electric_power"] == pytest.approx([8.0, 8.0 - 2.0 * 6.0], rel=1e-9)
+
+
 @pytest.mark.parametrize(
     ("values", "words"),
     [

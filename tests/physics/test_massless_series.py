@@ -122,3 +122,23 @@ def test_springs_beside_what_is_none_are_refused_by_name(other, named, through):
     d.add(other(d, y))
     (problem,) = d.check()
     assert f"nothing else determines its motion: {named} is neither spring nor damper" in str(problem)
+
+
+def test_accelerations_behind_a_knot_keep_the_balance_of_a_shaft_without_inertia():
+    """Torques at a sun without inertia change alike, also beside a worm whose friction follows its load."""
+    d = cw.Driveline("behind")
+    sun, ring, carrier = d.shaft("sun"), d.shaft("ring", inertia=0.03), d.shaft("carrier")
+    end, wheel = d.shaft("end", inertia=0.02), d.shaft("wheel", inertia=0.5)
+    d.add(cw.Planetary("planetary", sun=sun, ring=ring, carrier=carrier, ratio=3.0))
+    d.add(cw.SpringDamper("light", base=d.housing, follower=sun, stiffness=70.0, damping=0.05))
+    d.add(cw.SpringDamper("stiff", base=carrier, follower=end, stiffness=300.0, damping=0.7))
+    d.add(cw.WormGear("worm", worm=ring, wheel=wheel, ratio=20.0, lead_angle=0.2, friction_coefficient=0.05))
+    d.add(cw.Torque("drive", shaft=end, torque=cw.Table([(0.0, 1.0), (0.02, 1.0), (0.03, 3.0), (0.05, 0.0)])))
+    run = d.simulate(0.05, output="steps")
+    behind = np.flatnonzero(np.isin(run.time, (0.02, 0.03)))
+    assert len(behind) >= 2
+    v, a = ({name: run[f"{name}.{what}"] for name in ("sun", "carrier", "end")} for what in ("speed", "acceleration"))
+    light = 70.0 * v["sun"] + 0.05 * a["sun"]
+    stiff = 300.0 * (v["end"] - v["carrier"]) + 0.7 * (a["end"] - a["carrier"])
+    # the carrier feels 1 + 3 times the torque of the sun; inside of a step the slope is that of the interpolant
+    np.testing.assert_allclose(light[behind], stiff[behind] / 4.0, atol=1e-6)

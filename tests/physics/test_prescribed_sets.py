@@ -134,3 +134,26 @@ def test_a_dip_of_the_capacity_within_a_step_is_seen() -> None:
         found, fine = (run(np.random.default_rng([seed, 62]), **o) for o in ({}, {"rtol": 1e-6}))
         assert len(found.events.changes()) == len(fine.events.changes()), seed
         assert np.all(np.abs(found["b.torque"]) <= found["b.capacity"] + 1e-7), seed
+
+
+@pytest.mark.parametrize("turning", [False, True])
+def test_a_brake_on_a_prescribed_mass_does_not_keep_a_cam_locked(turning: bool) -> None:
+    """A brake and a cam that cannot pull hold a shaft up to the limit of the brake, whatever turns elsewhere."""
+    limit, first, slope = 10.0, 50.0, -5500.0
+    d = cw.Driveline("cam")
+    shaft, mass = d.shaft("shaft", inertia=0.08, angle=0.5), d.mass("mass", mass=1.0)
+    law = cw.Coulomb(static=0.5, kinetic=0.5)
+    d.add(cw.Brake("brake", shaft=shaft, friction=law, gain=1.0, normal_force=2 * limit, locked=True))
+    d.add(cw.Brake("other", shaft=mass, friction=law, gain=1.0, normal_force=2 * limit, locked=True))
+    d.add(cw.Torque("drive", shaft=shaft, torque=cw.Table([(0.0, first), (0.1, first + 0.1 * slope)])))
+    turns = np.pi * np.array([0.0, 0.5, 1.0, 1.5, 2.0])
+    lift = [(float(x), 0.01 * float(min(x, 2 * np.pi - x)) / np.pi) for x in turns]
+    d.add(cw.Cam("cam", shaft=shaft, mass=mass, lift=lift))
+    d.add(cw.PrescribedPosition("motion", shaft=mass, position=0.0016))
+    if turning:
+        one, two = d.shaft("one", inertia=0.1, speed=20.0), d.shaft("two", inertia=0.1)
+        d.add(cw.UniversalJoint("joint", base=one, follower=two, bend_angle=0.3))
+    run = d.simulate(0.03)
+    away = (-limit - first) / slope
+    assert run.events[0].time == pytest.approx(away, rel=1e-9)
+    assert run["shaft.speed"][-1] == pytest.approx(slope * (0.03 - away) ** 2 / 2 / 0.08, rel=1e-6)

@@ -93,6 +93,35 @@ def test_lag_is_of_first_order() -> None:
     assert "tc.impeller_torque" not in rig(200.0, 0.0).units
 
 
+def test_oil_that_still_coasts_finds_the_stator_free() -> None:
+    """A lagged torque of coast goes through whole while the impeller drives; the stator holds from its zero on."""
+    lag, first, w = 0.05, -101.0, 200.0
+    d = cw.Driveline("late")
+    speeds = {"impeller": w, "turbine": 0.4 * w, "support": 0.0}
+    ports = {name: d.shaft(name, inertia=1.0) for name in speeds}
+    for name, speed in speeds.items():
+        d.add(cw.PrescribedSpeed(f"{name}_speed", shaft=ports[name], speed=speed))
+    d.add(cw.TorqueConverter("tc", **ports, **TABLES, lag=lag, initial_torque=first))
+    run = d.simulate(0.1, **TIGHT)
+    last = 2.75e-3 * w * w
+    taken = last + (first - last) * np.exp(-run.time / lag)
+    turns = lag * np.log1p(-first / last)
+    assert np.min(np.abs(run.time - turns)) < 1e-8
+    assert run["support_speed.torque"] == pytest.approx(0.6 * np.maximum(taken, 0.0), abs=1e-5)
+    assert run["tc.turbine.torque"] == pytest.approx(taken + 0.6 * np.maximum(taken, 0.0), abs=1e-5)
+
+
+def test_a_stator_that_oil_of_coast_pushed_about() -> None:
+    """A torque moves the support away from an impeller at rest: the oil gives it nothing, and it does not chatter."""
+    d = cw.Driveline("pushed")
+    turbine, support = d.shaft("turbine", inertia=1.0), d.shaft("support", inertia=0.5)
+    ports = {"impeller": d.housing, "turbine": turbine, "support": support}
+    d.add(cw.Torque("drive", shaft=support, torque=-20.0))
+    d.add(cw.TorqueConverter("tc", **ports, **TABLES, lag=1.0, initial_torque=-100.0))
+    run = d.simulate(0.05)
+    assert run["support.speed"] == pytest.approx(-40.0 * run.time, rel=1e-6, abs=1e-9)
+
+
 def launch() -> cw.Driveline:
     """An engine, a converter with a lock-up clutch, a car."""
     d = cw.Driveline("launch")

@@ -258,7 +258,8 @@ concept ChatteringLaw = requires {
 
 /// Law, or torque element, that changes between smooth pieces by its own states or inputs; a law that sticks settles on
 /// one wherever it starts to slip. `margin` is positive inside `at.piece` and tells who is closest to leaving; `cross`
-/// gives the next piece and may move states (who = turned: the slip changed sign, watched where `turns`).
+/// gives the next piece and may move states (who = turned: the slip changed sign, watched where `turns`, or the motion
+/// that was decided has just entered `at.piece` at a kink).
 template <class L>
 concept SwitchingLaw =
     requires(const typename L::template Params<double>& p, const At<double>& at, double* state, int& who) {

@@ -288,7 +288,7 @@ void list_locked(Workspace<T>& ws) {
   h.too_many = h.vanished = false;
   if (ws.ratios.n == 0 && (!ws.geometry.redundant || n < 2)) return;
   if (is_few(ws.sys)) {
-    const int rank = split_held(ws, n);
+    const int rank = h.rank = split_held(ws, n);
     for (int a = 0; a < n; ++a) h.number[a] = -1;
     for (int j = 0; j < rank; ++j) h.number[h.order[j]] = 0;
     ws.ratios.n > 0 ? list_independent_beside(ws, n) : list_independent(ws, n);
@@ -327,7 +327,8 @@ template <class T>
     for (int a = 0; a < h.n; ++a) lay(a, h.contact[a]);
     for (int s = 0; s < h.n_redundant; ++s) lay(h.n + s, h.redundant[s]);
     const int rank = orthonormal_split(h.n + h.n_redundant, nv, h.rows, h.basis, h.order, h.norms, h.n);
-    h.vanished = rank < h.n;
+    // one between prescribed speeds had no direction before
+    h.vanished = rank < h.rank;
     for (int s = 0; s < h.n_redundant && !h.vanished; ++s) {
       resolve_direction(rank, nv, h.rows, h.order, h.rows + (h.n + s) * nv, h.share);
       const double size = value(ws.geometry.own[ne + h.redundant[s]]);
@@ -488,10 +489,10 @@ CLUTCHWORK_HOT void locked_torques(Workspace<T>& ws, const T* carried, Give&& gi
     share_load(ws, k, carried, give);
 }
 
-/// Force the contacts of set k to slip the way in which the set gives way at its limit load.
-/// docs/theory/contacts.md, rule 6
+/// Force the contacts of set k to slip the way in which the set gives way at its limit load. False, unless `anyway`:
+/// to round-off it still holds any multiple of its load, and nothing tells how. docs/theory/contacts.md, rule 6
 template <class T>
-void break_set(Workspace<T>& ws, int k, const T* carried) {
+bool break_set(Workspace<T>& ws, int k, const T* carried, bool anyway) {
   const DependentSet<T> set = dependent_set(ws, k, carried, T(0));
   const int* member = ws.held.set_member + ws.held.set_first[k];
   auto force = [&](auto&& price, auto&& motion) {
@@ -504,14 +505,17 @@ void break_set(Workspace<T>& ws, int k, const T* carried) {
   if (ws.sys.loads > 0 && holds_loads(ws)) {
     outer_loads(ws, k, ws.loads.now, carried);
     LoadedLimit<T> limit = loaded_limit(ws, set, member, T(0));
-    solve_at_limit(limit);
+    // with bounds as they are: where round-off widens them, it holds any multiple, and prices are round-off
+    if (!(value(solve_loaded(limit)) < limit.most) && !anyway) return false;
     const T way = T(limit.way_of_motion());
-    return force([&](int i) { return limit.price_of(i); }, [&](int i) { return way * limit.motion_of(i); });
+    force([&](int i) { return limit.price_of(i); }, [&](int i) { return way * limit.motion_of(i); });
+    return true;
   }
   LimitLoad<T> limit = limit_of(ws, set);
   limit.solve();
   auto price = [&](int i) { return limit.price[i]; };
   force(price, price);
+  return true;
 }
 
 /// Torques of the contacts that a decision has locked: what it gave them together, shared as everywhere else.

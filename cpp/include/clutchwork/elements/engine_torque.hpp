@@ -96,9 +96,8 @@ struct EngineTorque : declared::EngineTorque {
   }
   template <class T>
   static int cross(const Params<T>& p, const At<T>& at, int who, T* state) {
-    if (who == turned) return at.piece;
     Place x(p, at.piece);
-    x.go(who);
+    if (who != turned) x.go(who);
     // the integral rests on its end to the last bit
     const int i = place_of(p, idle);
     if (who == rest) state[i] = T(0);

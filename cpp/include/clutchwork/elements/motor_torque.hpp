@@ -81,9 +81,9 @@ struct MotorTorque : declared::MotorTorque {
   template <class T>
   static int cross(const Params<T>& p, const At<T>& at, int who, T*) {
     Place x(p, at.piece);
-    if (who == turned) return at.piece;
-    if (who < clips) x.clip = who;
-    if (who < clips && is_at_rest(p, at) && drives_at_limit(p, at, x)) turn(p, at, x);
+    const bool clipped = who != turned && who < clips;
+    if (clipped) x.clip = who;
+    if (clipped && is_at_rest(p, at) && drives_at_limit(p, at, x)) turn(p, at, x);
     if (who == less || who == more) x.load += who == more ? 1 : -1;
     if (who == cooler || who == warmer) x.warmth += who == warmer ? 1 : -1;
     return settled(p, at, x);

@@ -17,13 +17,11 @@ struct FullForm : SparseForm<T> {
   static constexpr bool full = true;
   using SparseForm<T>::SparseForm, SparseForm<T>::ws, SparseForm<T>::nz, SparseForm<T>::n;
 
-  /// LU factor of scale M - J, of all unknowns or of the first ones.
-  bool factor_whole(T scale, int count) {
-    const int size = n();
+  /// LU factor of scale M - J.
+  bool factor_whole(T scale) {
+    const int count = n();
     T* a = ws.full.factor;
-    for (int i = 0; i < count; ++i) {
-      for (int j = 0; j < count; ++j) a[i * count + j] = -ws.full.jacobian[i * size + j];
-    }
+    for (int i = 0; i < count * count; ++i) a[i] = -ws.full.jacobian[i];
     const Compressed<T>& mass = ws.rows.mass;
     for (int i = 0; i < nz(); ++i) {
       for (int e = mass.first[i]; e < mass.first[i + 1]; ++e) {
@@ -33,9 +31,18 @@ struct FullForm : SparseForm<T> {
       }
     }
     for (int i = nz(); i < count; ++i) a[i * count + i] += scale;
-    if (!factor_lu(count, a, ws.full.pivot)) return false;
-    pack(count);
-    return true;
+    return is_factored(count);
+  }
+  /// LU factor of -J in the rows of speeds without inertia; those of all others are of the unit matrix. A huge inertia
+  /// in their place would be a pivot of the columns of speeds that have none.
+  bool factor_held() {
+    const int count = nz(), size = n();
+    T* a = ws.full.factor;
+    for (int i = 0; i < count; ++i) {
+      const bool light = ws.rows.mass.first[i] == ws.rows.mass.first[i + 1];
+      for (int j = 0; j < count; ++j) a[i * count + j] = light ? -ws.full.jacobian[i * size + j] : T(i == j ? 1 : 0);
+    }
+    return is_factored(count);
   }
   template <class X>
   void solve_whole(X* b, int count) const {
@@ -54,6 +61,11 @@ struct FullForm : SparseForm<T> {
   }
 
  private:
+  bool is_factored(int count) {
+    if (!factor_lu(count, ws.full.factor, ws.full.pivot)) return false;
+    pack(count);
+    return true;
+  }
   /// Most of a factor are zeros, and it is solved with several times.
   void pack(int count) {
     Full<T>& f = ws.full;

@@ -11,7 +11,7 @@
 /// inertia
 namespace clutchwork {
 
-/// A huge inertia holds all other speeds.
+/// A huge inertia holds all other speeds, where no pivots are chosen.
 inline constexpr double held_inertia = 1e30;
 
 template <class T>
@@ -26,13 +26,14 @@ bool any_massless(const Form& form) {
   return false;
 }
 
-/// b := change of the speeds by which b is missing in the balance of torques that was linearized last. False: it is
+/// b := change of the speeds without inertia by which b is missing in the balance of torques that was linearized last;
+/// of all others b is the change itself in the full form, and that times their huge inertia else. False: it is
 /// singular.
 template <class Form, class T = typename Form::Scalar>
 bool solve_held(Form& form, T* b) {
   Workspace<T>& ws = form.ws;
   if constexpr (Form::full) {
-    if (!form.factor_whole(T(held_inertia), form.nz())) return false;
+    if (!form.factor_held()) return false;
     form.solve_whole(b, form.nz());
   } else {
     T* stiff = ws.stages.stiff;
@@ -188,10 +189,10 @@ void change_massless(Form& form, double t, const T* y, T* d, T* b, T* dt) {
     }
   }
   for (int i = 0; i < nz; ++i) {
-    b[i] = is_massless(ws, i) ? b[i] + dt[i] : T(0);
+    b[i] = is_massless(ws, i) ? b[i] + dt[i] : Form::full ? d[i] : T(0);
     if (is_massless(ws, i)) d[i] = T(0);
   }
-  form.add_mass_times(T(held_inertia), d, b);
+  if constexpr (!Form::full) form.add_mass_times(T(held_inertia), d, b);
   if (!solve_held(form, b)) return;
   for (int i = 0; i < nz; ++i) {
     if (is_massless(ws, i)) d[i] = b[i];

@@ -106,8 +106,12 @@ bool enter_pieces(Workspace<T>& ws) {
     if (!may_jump(ws, d)) continue;
     if (!looked) accelerations_after(ws), looked = true;
     const int piece = entered_piece(ws, d);
-    any = any || piece != ws.piece[d];
-    ws.piece[d] = piece;
+    if (piece == ws.piece[d]) continue;
+    any = true, ws.piece[d] = piece;
+    // what else of its piece follows the torque there
+    if (!is_settling(ws.sys.element_kind[d])) continue;
+    const Branch<T> b = make_branch(ws, d, 0);
+    ws.piece[d] = law_cross(ws, b, PresentRates<T>(ws, b).at, turned, ws.state);
   }
   return any;
 }

@@ -102,17 +102,26 @@ struct SetLimit : OwnScale {
   static int component(const Workspace<T>& ws, const Hit& hit) {
     return int(ws.sys.elements) + ws.held.set_member[ws.held.set_first[hit.index]];
   }
-  /// Its contacts slip the way in which it gives way, seen just behind the limit.
+  /// Its contacts slip the way in which it gives way, seen as close behind the limit as that can be told.
   template <class Phase, class T = typename Phase::Scalar>
   static void force(Phase& phase, const Hit& hit) {
+    constexpr int halvings = 20;
+    const double s = larger(hit.s, 1e-6);
+    for (int k = halvings + 1; k >= 0; --k) {
+      see_at(phase, k > halvings ? s : s + (1 - s) / (1 << k));
+      if (break_set(phase.ws(), hit.index, phase.ws().observed.carried, k == 0)) return;
+    }
+  }
+  /// Torques and loads at the share s of the step.
+  template <class Phase, class T = typename Phase::Scalar>
+  static void see_at(Phase& phase, double s) {
     Workspace<T>& ws = phase.ws();
     auto& seen = phase.taken_form().ws;
-    torques_at(phase.taken_form(), phase.taken_step(), larger(hit.s, 1e-6));
+    torques_at(phase.taken_form(), phase.taken_step(), s);
     if constexpr (has_tangents<T>) {
       for (int a = 0; a < ws.held.n; ++a) ws.observed.carried[a] = T(seen.observed.carried[a]);
       for (int l = 0; l < ws.sys.loads; ++l) ws.loads.now[l] = T(seen.loads.now[l]);
     }
-    break_set(ws, hit.index, ws.observed.carried);
   }
   /// Freewheels at their own limit give way for good.
   template <class Phase>

@@ -49,7 +49,7 @@ struct Rodas5P {
   /// Fold the states of the branches into effective dampings and factor. docs/theory/integrators.md
   template <class Form, class T = typename Form::Scalar>
   static CLUTCHWORK_HOT Truth<T> factor(Form& form, T scale) {
-    if constexpr (Form::full) return form.factor_whole(scale, form.n());
+    if constexpr (Form::full) return form.factor_whole(scale);
     const Truth<T> regular = factor_motion(form, scale);
     if constexpr (!Form::small) {
       if (regular && form.ws.sys.shared > 0) return factor_border(form, scale, [&](T* b) { solve_motion(form, b); });
