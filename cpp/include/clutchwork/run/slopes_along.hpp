@@ -1,4 +1,5 @@
 #pragma once
+#include <clutchwork/components/slopes.hpp>
 #include <clutchwork/motion/dynamics.hpp>
 #include <clutchwork/run/integrator/memory.hpp>
 #include <clutchwork/workspace.hpp>
