@@ -59,7 +59,7 @@ void jacobian() {
   // the matrix of a step times its solution
   const double scale = 300;
   Numbers b(y.size(), 1), x(b);
-  CHECK(form.factor_whole(scale, n));
+  CHECK(form.factor_whole(scale));
   form.solve_whole(x.data(), n);
   Numbers back(y.size(), 0);
   form.add_mass_times(scale, x.data(), back.data());
