@@ -27,6 +27,9 @@ class TorqueConverter(Heating):
     A lock-up clutch is a contact in parallel; when locked it carries everything.
     """
 
+    # the stator runs free where the oil still carries a torque of coast
+    bends = True
+
     impeller: Node = port("wheel of the engine")
     turbine: Node = port("wheel of the gearbox")
     support: Node | None = port("member that carries the stator", default=None)

@@ -1,4 +1,4 @@
-"""Contacts that begin at rest: a start value beside it slips one way or the other."""
+"""Starts beside which the equations are others: contacts at rest, states at zero."""
 
 from __future__ import annotations
 
@@ -42,6 +42,20 @@ def at_rest(chart: Chart, words: Array, slopes: Slopes) -> Iterator[tuple[str, M
         numbers: Mask = (np.abs(moved) > 0.0) | slopes.of(driven).any(axis=0)
         if numbers.any():
             yield f"{contact.name} begins at rest, and slips one way or the other for another start value", numbers
+
+
+def at_zero(chart: Chart, slopes: Slopes) -> Iterator[tuple[str, Mask]]:
+    """What is said of states that start at zero where equations change there, and numbers that would move them."""
+    system, states = chart.assembled.system, chart.words_in("initial_state")
+    if not slopes.touch(*states):
+        return
+    for element in system.elements:
+        first = int(system.arrays["element_state"][system.numbered.places[element.name][1]])
+        for place, (state, start) in enumerate(zip(element.own_states(), element.initial_states(), strict=True), first):
+            numbers: Mask = slopes.of(np.array([states[0] + place]))[0] != 0.0
+            if element.bends and start == 0.0 and numbers.any():
+                why = f"{element.name} begins with {state.name} zero, on whose sides it has other equations"
+                yield why, numbers
 
 
 def _driven(chart: Chart, number: int) -> Places:

@@ -14,7 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from clutchwork.base.classes import dataclass
-from clutchwork.gradients.beginning import at_rest
+from clutchwork.gradients.beginning import at_rest, at_zero
 from clutchwork.gradients.contact_at_rest import unpressed
 from clutchwork.gradients.grazing import (
     crowded,
@@ -31,6 +31,9 @@ from clutchwork.gradients.runs import Run, RunPoint, Runs
 
 Mask = NDArray[np.bool_]
 
+# a state that starts so many steps beside zero passes it where an event is seen
+BEHIND_THE_START = 1e3
+
 
 class Doubt(NamedTuple):
     """A reason, and the values and the numbers that it concerns."""
@@ -40,6 +43,8 @@ class Doubt(NamedTuple):
     numbers: Mask
     # what a number does on one side is the same wherever the others are on that side
     one_way: bool = False
+    # how much farther beside the point it is looked at: an event that is too close to the start is not seen
+    width: float = 1.0
 
 
 @dataclass(frozen=True, eq=False)
@@ -153,5 +158,8 @@ class Doubts:
         begin, end = self.runs.wanted.begin, self.runs.wanted.t_end
         for time, why, numbers in unpressed(chart, words, self.point.slopes, names, begin, end):
             yield Doubt(why, self._up_to(time), numbers, one_way=True)
+        every = np.ones(len(self.lines), dtype=bool)
         for why, numbers in at_rest(chart, words, self.point.slopes):
-            yield Doubt(why, np.ones(len(self.lines), dtype=bool), numbers)
+            yield Doubt(why, every, numbers)
+        for why, numbers in at_zero(chart, self.point.slopes):
+            yield Doubt(why, every, numbers, width=BEHIND_THE_START)

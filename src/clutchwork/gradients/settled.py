@@ -48,16 +48,19 @@ class Settling:
     both: dict[str, Array]  # left and right
     why: NDArray[np.object_] = field(repr=False)  # of each derivative: why it is in doubt
     one_way: Mask  # numbers that are in doubt for kinks alone that do not depend on the others
+    steps: Array  # how far beside the point each number is looked at
 
     @classmethod
     def of(cls, task: GradientTask, x: Array, sizes: Array, lines: Sequence[Line], doubts: Sequence[Doubt]) -> Settling:
         """Those of a run."""
         why, one_way = np.full((len(lines), len(x)), "", dtype=object), np.ones(len(x), dtype=bool)
+        steps = STEP * sizes
         for doubt in reversed(doubts):
             why[np.ix_(doubt.lines, doubt.numbers)] = doubt.why
             one_way &= doubt.one_way | ~doubt.numbers
+            steps = np.maximum(steps, np.where(doubt.numbers, doubt.width * STEP * sizes, 0.0))
         why[[bool(line.none) for line in lines]] = ""
-        return cls(task, x, sizes, lines, {side: _taken(lines, side, why.shape) for side in SIDES}, why, one_way)
+        return cls(task, x, sizes, lines, {side: _taken(lines, side, why.shape) for side in SIDES}, why, one_way, steps)
 
     # ------------------------------------------------------------------------------------------------------- beside it
 
@@ -79,7 +82,7 @@ class Settling:
         """Which derivatives are the same on both sides of the point, in directions that move all numbers."""
         alike, chance = np.ones(self.why.shape, dtype=bool), np.random.default_rng(0)
         for _ in range(DIRECTIONS):
-            way = STEP * self.sizes * chance.uniform(0.5, 1.0, len(self.x)) * chance.choice([-1.0, 1.0], len(self.x))
+            way = self.steps * chance.uniform(0.5, 1.0, len(self.x)) * chance.choice([-1.0, 1.0], len(self.x))
             for sign in SIDES.values():
                 found = beside(self.x + sign * way, None)
                 if found is None:
@@ -98,11 +101,11 @@ class Settling:
         """
         open_, sizes = self.why[:, numbers] != "", self.sizes[numbers]
         own = np.array([one[:, numbers] for one in self.both.values()])
-        there, is_run = self._beside(numbers, beside, STEP)
+        there, is_run = self._beside(numbers, beside, 1.0)
         same = self._is_same(own, there[is_run], sizes)
         if np.any(open_ & ~same):
             # what is more than the derivatives at the point: the limits of those beside it
-            nearer, is_run = self._beside(numbers, beside, NEARER * STEP)
+            nearer, is_run = self._beside(numbers, beside, NEARER)
             limits = (nearer - NEARER * there) / (1.0 - NEARER)
             nearly = np.abs(nearer - there) <= NEARLY * np.maximum(np.abs(nearer), np.abs(there))
             # one that falls with the distance itself, as that of a square at zero, ends there
@@ -131,7 +134,7 @@ class Settling:
         """Derivatives by numbers on both sides of the point, NaN where a value jumps, and where there is a run."""
         shape = len(self.lines), len(self.x)
         made, is_run = np.full((len(SIDES), shape[0], len(numbers)), np.nan), np.zeros(len(SIDES), dtype=bool)
-        step = np.where(np.isin(np.arange(len(self.x)), numbers), width * self.sizes, 0.0)
+        step = np.where(np.isin(np.arange(len(self.x)), numbers), width * self.steps, 0.0)
         for place, (side, sign) in enumerate(SIDES.items()):
             found = beside(self.x + sign * step)
             if found is not None:
