@@ -45,6 +45,8 @@ def rows(quick: bool = False) -> Iterator[Row]:
     if shutil.which(VALGRIND[0]) is None:
         yield Row("gradients by instructions", "not installed: apt install valgrind")
         return
+    # what the first process of all writes down for the others, such as bytecode, is not counted
+    counted("shift", FEW)
     yield from gradients.compared("instructions", lambda name, plain: of_call(name) / of_call(plain))
 
 
