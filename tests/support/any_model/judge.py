@@ -91,7 +91,7 @@ def ending(made: Plain, base: Any) -> list[Fault]:
     if "naive_sign" in laws and base.status in ("chatter", "too_many_steps", "too_many_events", "zeno"):
         return []
     # an explicit method that was asked for spends its budget where the motion is stiff: the others must not
-    if base.status == "too_many_steps" and made["simulation"].get("method") == "dopri5":
+    if base.status == "too_many_steps" and base.options.method == "dopri5":
         return ending(made, agree.run(made, method="auto"))
     if base.status == "jammed" and not is_told(base):
         return [Fault("status", base.status, f"without its sentence: {base.message[:300]}")]
