@@ -54,6 +54,7 @@ class Loop(NamedTuple):
         command = [str(self.program), *self.before, str(threads), str(T_END), "0"]
         running = [subprocess.Popen(command, stdout=subprocess.PIPE, text=True) for _ in range(copies)]
         texts = [one.communicate()[0].split()[:2] for one in running]
+        assert all(one.returncode == 0 for one in running), command
         return Taken(*(max(float(text[i]) for text in texts) for i in range(2)))
 
 

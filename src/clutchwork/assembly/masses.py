@@ -47,7 +47,7 @@ class Masses:
     def of(cls, system: SystemData, source: Model) -> Masses | None:
         """Those of a System; None where more follows from them, as the weight of a vehicle, or other speeds."""
         found = findings(source).structure
-        if found is None or any(map(_judges, source.elements)):
+        if found is None or any(map(judges, source.elements)):
             return None
         names = [node.name for node in found.mechanism.nodes]
         where = {id(node): place for place, node in enumerate(source.nodes) if node.inertia > 0.0}
@@ -68,9 +68,7 @@ class Masses:
         rank = {place: number / len(self._order) for number, place in enumerate(self._order)}
         share = {name: 1.0 + PROBE * (1.0 + rank[place]) for name, place in self.places.items()}
         moved = {name: float(self.inertia[place]) * share[name] for name, place in self.places.items()}
-        given = assembled(changed_model(source, moved), system.wanted)["arrays"]
-        own = {**system.arrays, **patched(system.arrays, self.patches(moved) or [])}
-        return all(given[name].tobytes() == array.tobytes() for name, array in own.items())
+        return is_all(system, source, moved, self.patches(moved) or [])
 
     @cached_property
     def _order(self) -> list[int]:
@@ -129,12 +127,19 @@ class Masses:
         return {("inertia", place): 1.0} | {word: float(factor) for word, factor in self.shares[place].items()}
 
 
+def is_all(system: SystemData, source: Model, moved: Mapping[str, float], found: list[Patch]) -> bool:
+    """Whether assembling a model with other numbers changes the arrays as patches do, and nothing else."""
+    given = assembled(changed_model(source, moved), system.wanted)["arrays"]
+    own = {**system.arrays, **patched(system.arrays, found)}
+    return all(given[name].tobytes() == array.tobytes() for name, array in own.items())
+
+
 def _is_inertia(value: Any) -> bool:
     return type(value) in (float, int) and 0.0 < value < inf
 
 
-def _judges(element: Component) -> bool:
-    """Whether an element of another package has rules, which may look at inertias."""
+def judges(element: Component) -> bool:
+    """Whether an element of another package has rules, which may look at inertias and speeds."""
     kind = type(element)
     return kind.problems is not Component.problems and not kind.__module__.startswith("clutchwork.")
 

@@ -8,14 +8,14 @@ from fractions import Fraction
 from math import isfinite
 from typing import TYPE_CHECKING, Any
 
-from clutchwork.assembly.assemble import assembled, chosen
-from clutchwork.assembly.patches import Patch, patched
+from clutchwork.assembly.assemble import chosen
+from clutchwork.assembly.masses import is_all, judges
+from clutchwork.assembly.patches import Patch
 from clutchwork.base import ModelError, dataclass
 from clutchwork.base.memoize import memoize
 from clutchwork.declare.node import Component, Node
 from clutchwork.declare.rational import ONE, ZERO, exact
 from clutchwork.declare.schema import Role
-from clutchwork.model.changes import changed_model
 from clutchwork.model.findings import findings
 from clutchwork.model.start import Started, initial_speeds
 from clutchwork.signals.bases.waveform import value
@@ -25,7 +25,7 @@ if TYPE_CHECKING:
     from clutchwork.model.findings import Structure
     from clutchwork.model.model import Model
 
-# by one to two such shares of their size and of 1 rad/s speeds are moved to see that no more follows from them
+# speeds [rad/s], m/s for masses, of one to two times this size show that no more follows from them
 PROBE = 1e-3
 
 
@@ -41,7 +41,9 @@ class StartSpeeds:
         """That of a System; None where more follows from the speeds, or they contradict others."""
         found = findings(source).structure
         known = {} if found is None else _places(source, found)
-        if found is None or not known.keys() >= set(names) or any(map(_judges, source.elements)):
+        if found is None or not known.keys() >= set(names) or any(map(judges, source.elements)):
+            return None
+        if any(map(_begins_with_a_speed, found.mechanism.components)):
             return None
         if any(motion.begins_with_shaft() for motion in found.mechanism.role(Role.MOTION)):
             return None
@@ -59,9 +61,7 @@ class StartSpeeds:
     def _is_all(self, system: SystemData, source: Model, names: Sequence[str]) -> bool:
         """Whether nothing else changes, seen by moving all."""
         moved = {name: PROBE * (1.0 + number / len(names)) for number, name in enumerate(names)}
-        given = assembled(changed_model(source, moved), system.wanted)["arrays"]
-        own = {**system.arrays, **patched(system.arrays, self.patches(moved) or [])}
-        return all(given[name].tobytes() == array.tobytes() for name, array in own.items())
+        return is_all(system, source, moved, self.patches(moved) or [])
 
     def patches(self, changes: Mapping[str, Any]) -> list[Patch] | None:
         """The words of other speeds; None where others change too.
@@ -109,11 +109,8 @@ def _is_speed(given: Any) -> bool:
     return type(given) is float and isfinite(given)
 
 
-def _judges(element: Component) -> bool:
-    """Whether an element begins with a speed, or is of another package and has rules, which may look at speeds."""
-    kind = type(element)
-    is_own = kind.__module__.startswith("clutchwork.")
-    return kind.states_at is not Component.states_at or not (is_own or kind.problems is Component.problems)
+def _begins_with_a_speed(element: Component) -> bool:
+    return type(element).states_at is not Component.states_at
 
 
 @memoize

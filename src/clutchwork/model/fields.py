@@ -178,8 +178,8 @@ def signal_problems(value: Any, spec: Spec, at: At) -> Iterator[Problem]:
             yield at.inner(name).problem(message, remedy=remedy)
         reached = () if found or not (spec.bound or spec.presses) else tuple(extremes(value))
         yield from _beyond_bounds(reached, spec, at) if spec.bound else ()
-        negative = spec.presses and not any(load > 0.0 for _, load in reached) and not found and not _grows(value)
-        yield from _never_presses((load for _, load in reached), at) if negative else ()
+        asked = spec.presses and not found and not _grows(value)
+        yield from _never_presses((load for _, load in reached), at) if asked else ()
     elif (isinstance(value, Real) and not isinstance(value, bool)) or _is_measured(value):
         found = list(number_problems(value, spec, at))
         yield from found
