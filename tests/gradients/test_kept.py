@@ -525,3 +525,31 @@ def test_a_top_between_two_long_steps() -> None:
     tally = judged(d, 0.0455, [cw.minimum("motion.torque")], ["motion.cutoff"])
     assert tally.wrong + tally.refused == []
     assert tally.compared == 1
+
+
+def test_a_clutch_lets_go_where_a_torque_jumps_at_a_border() -> None:
+    # seed 96022: its modes were decided at the instant of the border, and not at one that moves
+    d = cw.Driveline("burns")
+    e, w = d.shaft("e", inertia=0.3, speed=40.0), d.shaft("w", inertia=1.0, speed=40.0)
+    full, drag = ((0.0, 100.0), (500.0, 150.0)), ((0.0, -10.0), (500.0, -40.0))
+    d.add(cw.Engine("eng", shaft=e, throttle=0.8, full_load=full, motoring=drag, stall_speed=60.0))
+    d.add(cw.Torque("t", shaft=e, torque=60.0))
+    law = cw.Coulomb(static=0.12, kinetic=0.1)
+    d.add(cw.Clutch("c", base=e, follower=w, friction=law, gain=1.0, normal_force=500.0, locked=True))
+    compared(d, 1.0, ["e.speed", "w.speed", "c.heat", cw.break_away("c")], ["t.torque", "eng.stall_speed", "e.inertia"])
+
+
+@pytest.mark.parametrize("points", [[(0.0, 5.0), (0.1, 5.0), (0.1, 0.0)], [(0.0, 0.0)]])
+def test_a_stop_that_is_closed_without_load_opens_for_a_little_less(points: list[tuple[float, float]]) -> None:
+    # seed 96021: behind a jump to a torque of zero, or from the start of the run on
+    d = cw.Driveline("rests")
+    a, b = d.shaft("a", inertia=0.2), d.shaft("b", inertia=0.3)
+    d.add(cw.Backlash("play", base=a, follower=b, gap=0.02, initial_twist=0.01))
+    d.add(cw.Torque("t", shaft=b, torque=cw.Table([*points, (1.0, 0.0)])))
+    by = f"t.torque.values[{len(points)}]"
+    with pytest.raises(cw.NoGradient, match="play is closed without load from .* s on, and a little less opens it"):
+        derivatives(d, 1.0, of="b.speed", by=by)
+    # half of the time that is left, over the inertias that move
+    left, right = (derivatives(d, 1.0, "b.speed", by, side=side).matrix[0, 0] for side in ("left", "right"))
+    area = 0.5 * (1.0 - points[-1][0])
+    assert [left, right] == pytest.approx([area / 0.3, area / 0.5], rel=1e-6)

@@ -60,6 +60,19 @@ def loads() -> tuple[int, ...]:
     return tuple(number for number, (name, _) in enumerate(derivatives().guards) if name == "flip")
 
 
+@cache
+def limits() -> tuple[int, ...]:
+    """Numbers in the core of the guards of what locked contacts hold."""
+    return tuple(number for number, (name, _) in enumerate(derivatives().guards) if name == "multiplier")
+
+
+def _on_borders(grazes: Array) -> NDArray[np.bool_]:
+    """Those at which another piece begins, or nothing is held from then on by what holds one way alone."""
+    stays = np.isin(grazes[:, KIND], limits()) & np.isinf(grazes[:, INDEX])
+    found: NDArray[np.bool_] = np.isin(grazes[:, KIND], borders()) | stays
+    return found
+
+
 def together(grazes: Array, decided: Array) -> bool:
     """Whether what is hit at one instant moves apart, of which a run that is followed back knows no more.
 
@@ -67,7 +80,7 @@ def together(grazes: Array, decided: Array) -> bool:
     """
     if not grazes[:, DIFFERENCE].any():
         return False
-    bordering = grazes[np.isin(grazes[:, KIND], borders()) | (grazes[:, KIND] < 0)]
+    bordering = grazes[_on_borders(grazes) | (grazes[:, KIND] < 0)]
     return bool(np.any(bordering[:, DIFFERENCE] > 0.0) or np.any(decided[:, DIFFERENCE] > 0.0))
 
 
@@ -108,11 +121,13 @@ def moving_apart(
     """
     if not grazes[:, DIFFERENCE].any():
         return
-    met = np.concatenate([decided, grazes[np.isin(grazes[:, KIND], borders())]])
+    met = np.concatenate([decided, grazes[_on_borders(grazes)]])
     for graze in np.unique(met[met[:, DIFFERENCE] * sizes > APART], axis=0):
         time, name = float(graze[TIME]), component(system, int(graze[COMPONENT]), int(graze[KIND]))
         if graze[KIND] in loads() and graze[INDEX] == np.inf:
             yield time, f"the load of {name} is zero from {time:.9g} s on, and a little more turns it either way"
+        elif graze[KIND] in limits() and graze[INDEX] == np.inf and graze[COMPONENT] >= 0:
+            yield time, f"{name} is closed without load from {time:.9g} s on, and a little less opens it"
         elif abs(time - begin) <= SAME * (1.0 + abs(begin)):
             yield time, f"{name} begins where it goes from one piece to another; move a start value, or that border"
         else:

@@ -126,17 +126,18 @@ BoundedProblem<T> pose_problem(Workspace<T>& ws, bool warm) {
 }
 
 /// Acceleration of the slip of candidate a that counts as none: round-off. Between prescribed speeds only what leaves
-/// zero within a microsecond is a departure; for a contact that has just come to rest, what leaves it within a
-/// millisecond; for one that has jammed, where its load is zero, what more than the round-off of the load makes.
+/// zero within a microsecond is a departure, of one that passes it what does within a second; for a contact that has
+/// just come to rest, what leaves it within a millisecond; for one that has jammed, where its load is zero, what more
+/// than the round-off of the load makes.
 template <class T>
 double slope_noise(const Workspace<T>& ws, const BoundedProblem<T>& p, int a, int located, double tolerance) {
   const int c = ws.decision.list[a];
-  if (is_rigid(ws, c)) return 1e6 * tolerance;
+  const bool arrived = c == located && ws.event_context.cause == Cause::slip_zero;
+  if (is_rigid(ws, c)) return (arrived ? 1.0 : 1e6) * tolerance;
   double scale = abs(value(p.gradient[a]));
   p.matrix.each(a, [&](int b, T g) { scale = larger(scale, abs(value(g * p.x[b]))); });
   const double mobility = value(sqrt(p.matrix.diagonal[a]));
   const double round_off = larger(1e-10 * scale, 1e-12 * ws.decision.effort * mobility);
-  const bool arrived = c == located && ws.event_context.cause == Cause::slip_zero;
   // what comes back at the instant at which it was let go has not left
   if (arrived && stands_since(ws, ws.contact.met_at[c])) return infinity;
   const bool jammed = c == ws.event_context.contact && ws.event_context.cause == Cause::jam;

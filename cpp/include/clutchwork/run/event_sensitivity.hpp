@@ -155,14 +155,21 @@ void note_borders_of(Form& form, Step<Form>& step, int place) {
   ws.in.time = -infinity;
 }
 
-/// Borders of pieces on which the run begins. `loads` alone: loads that follow torques and are zero from here on.
+/// Which borders a state may be on for more than an instant.
+enum class Borders {
+  all,      ///< where the run begins
+  carried,  ///< where what is carried has jumped: loads, and what holds one way alone
+  held      ///< behind an event: what holds one way alone
+};
+
+/// Borders on which the run goes on: of pieces at its start, of loads that are zero from here on.
 template <class Form>
-void note_borders(Form& form, Step<Form>& step, bool loads = false) {
-  if (form.ws.statistics.steps > 0 && !loads) return;
+void note_borders(Form& form, Step<Form>& step, Borders which) {
   GuardList::each([&](auto tag, int place) {
     using G = typename decltype(tag)::type;
+    constexpr bool flips = std::is_same_v<G, LineFlip>, holds = std::is_same_v<G, TorqueLimit>;
     if constexpr (requires { G::each_border(form.ws, [](int) {}); }) {
-      if (!loads || std::is_same_v<G, LineFlip>) note_borders_of<G>(form, step, place);
+      if (which == Borders::all || holds || (flips && which == Borders::carried)) note_borders_of<G>(form, step, place);
     }
   });
 }

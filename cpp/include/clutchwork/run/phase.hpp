@@ -143,7 +143,7 @@ class Phase : public StepSize<typename Form::Scalar> {
     }
     if constexpr (has_tangents<T>) {
       if (event && leave_event(form_, step_)) balance_massless(form_, step_);
-      note_borders(form_, step_);
+      if (event || ws_.statistics.steps == 0) note_borders(form_, step_, borders_here());
     }
     ws_.fresh_phase = ws_.stiffened = false;
     // at a knot the row is the right limit, which comes after it
@@ -152,6 +152,12 @@ class Phase : public StepSize<typename Form::Scalar> {
     // counted as one, so that a run counts alike wherever it is left
     linearized ? void(++ws_.statistics.jacobians) : linearize_start();
     h_ = first_length(event);
+  }
+
+  /// Those on which the phase may begin.
+  Borders borders_here() const {
+    if (ws_.statistics.steps == 0) return Borders::all;
+    return ws_.event_context.cause == Cause::input ? Borders::carried : Borders::held;
   }
 
   double first_length(bool event) {
@@ -188,11 +194,13 @@ class Phase : public StepSize<typename Form::Scalar> {
   void end(Status status) { status_ = status; }
   /// Nothing needs a decision, but for torques that have jumped beyond what locked contacts hold.
   void go_on(bool jumped) {
-    if constexpr (!Form::small && !has_tangents<T>) {
+    if constexpr (!Form::small) {
       if (jumped && balance_massless(form_, step_)) export_state(form_, step_.y0());
     }
-    linearize_behind_event();
+    if (jumped || !has_tangents<T>) linearize_start();
+    // derivatives are still those at the event, where the modes are decided
     if (jumped && is_beyond(taken_form().ws)) return decide(Cause::other_event);
+    if constexpr (has_tangents<T>) linearize_behind_event();
     if (ws_.guard.n_chattering > 0 && chatters(ws_)) return leave(Status::chatter);
     show_behind(false);
     h_ = ws_.last_step;
@@ -291,7 +299,7 @@ class Phase : public StepSize<typename Form::Scalar> {
     if (knot_lets_go(taken_form().ws)) return decide(Cause::input);
     if constexpr (has_tangents<T>) {
       if (leave_event(form_, step_)) balance_massless(form_, step_), linearize_start();
-      note_borders(form_, step_, true);
+      note_borders(form_, step_, Borders::carried);
     }
     show_behind(jumps);
   }
