@@ -116,11 +116,14 @@ def _depend(rates: Array) -> bool:
 
 def refined(steps: Steps, ones: Sequence[Extreme], values: Values) -> Steps | None:
     """The steps split where signals bend near their extremes; None where they do not."""
-    made = steps
+    made, before = steps, [len(steps)] * len(ones)
     for _ in range(ROUNDS):
         cuts, seen = dict[int, set[float]](), values(made)
-        for one, own, torque in zip(ones, seen.values, seen.torques, strict=True):
-            for step in _rough(one, made, own, seen.may_bend):
+        for number, (one, own, torque) in enumerate(zip(ones, seen.values, seen.torques, strict=True)):
+            rough = list(_rough(one, made, own, seen.may_bend))
+            # a bend is in one part of a step or two: what is as rough in most of them is round-off
+            before[number] = len(rough) if len(rough) <= max(CUTS, 2 * before[number]) else 0
+            for step in rough[: before[number]]:
                 cuts.setdefault(step, set()).update(_places(made, own, step))
             for step, place in _turns(made, own, torque) if torque is not None else ():
                 cuts.setdefault(step, set()).add(place)
