@@ -94,8 +94,12 @@ bool run_chunk(const nb::bytes& system, const Words& words, const Seeds& seeds, 
   } while (found.status == int(clutchwork::Status::events_full));
   for (std::int64_t i = 0; i < found.filled * row; ++i)
     std::copy_n(parts.data() + i * width, used, slopes.data() + i * n + first);
-  std::vector<double> grazes(std::size_t(most_grazes * CW_GRAZE));
-  const std::int64_t met = cw_tangents_grazes(run, grazes.data(), most_grazes);
+  std::vector<double> grazes(std::size_t(most_grazes * CW_GRAZE)), graze_parts(std::size_t(most_grazes * width));
+  const std::int64_t met = cw_tangents_grazes(run, grazes.data(), graze_parts.data(), most_grazes);
+  // their instants follow those of the events
+  moved.resize(std::max(moved.size(), std::size_t((n_events + met) * n)));
+  for (std::int64_t g = 0; g < met; ++g)
+    std::copy_n(graze_parts.data() + g * width, used, moved.data() + (n_events + g) * n + first);
   // two events at one instant may differ in some directions alone
   if (found.grazes.empty()) found.grazes.assign(grazes.begin(), grazes.begin() + met * CW_GRAZE);
   for (std::int64_t i = CW_GRAZE - 1; i < std::min(met * CW_GRAZE, std::int64_t(found.grazes.size())); i += CW_GRAZE)
@@ -128,7 +132,7 @@ nb::tuple tangents(const nb::bytes& system, const Words& words, const Seeds& see
   const std::size_t e = found.events.size() / std::size_t(event_columns), g = found.grazes.size() / CW_GRAZE;
   return nb::make_tuple(
       found.status, found.filled, array(std::move(found.rows), {k, r}), array(std::move(slopes), {k, r, n}),
-      array(std::move(found.events), {e, std::size_t(event_columns)}), array(std::move(moved), {e, n}),
+      array(std::move(found.events), {e, std::size_t(event_columns)}), array(std::move(moved), {e + g, n}),
       array(std::move(found.grazes), {g, std::size_t(CW_GRAZE)}), nb::make_tuple(found.component, found.value));
 }
 
@@ -185,11 +189,11 @@ class Adjoint {
   Adjoint(const Adjoint&) = delete;
   Adjoint& operator=(const Adjoint&) = delete;
 
-  /// Derivatives of the weighted sum of rows and times of events by the words.
+  /// Derivatives of the weighted sum of rows and times, of events and of guards behind them, by the words.
   nb::object back(const Seeds& row_weights, const Times& event_weights) const {
     if (row_weights.shape(0) * row_weights.shape(1) != row_numbers_.size() ||
         event_weights.shape(0) != event_numbers_.size())
-      throw nb::value_error("one weight for each number of the rows and each event");
+      throw nb::value_error("one weight for each number of the rows, each event and each guard that was hit");
     std::vector<double> found(seeds_.size());
     bool good = true;
     {
@@ -208,7 +212,7 @@ class Adjoint {
   }
 
   nb::tuple found() const {
-    const std::size_t e = event_numbers_.size(), g = found_.grazes.size() / CW_GRAZE;
+    const std::size_t e = found_.events.size() / std::size_t(event_columns), g = found_.grazes.size() / CW_GRAZE;
     auto copy = [](const std::vector<double>& x) { return std::vector<double>(x); };
     return nb::make_tuple(found_.status, found_.filled, array(copy(found_.rows), {std::size_t(k_), std::size_t(row_)}),
                           array(copy(found_.events), {e, std::size_t(event_columns)}),
@@ -234,8 +238,10 @@ class Adjoint {
         event_numbers_.insert(event_numbers_.end(), numbers.begin(), numbers.begin() + taken);
       }
     } while (found_.status == int(clutchwork::Status::events_full));
-    found_.grazes.resize(std::size_t(most_grazes * CW_GRAZE));
-    found_.grazes.resize(std::size_t(cw_adjoint_grazes(run_, found_.grazes.data(), most_grazes) * CW_GRAZE));
+    found_.grazes.resize(std::size_t(most_grazes * CW_GRAZE)), numbers.resize(std::size_t(most_grazes));
+    const std::int64_t met = cw_adjoint_grazes(run_, found_.grazes.data(), numbers.data(), most_grazes);
+    found_.grazes.resize(std::size_t(met * CW_GRAZE));
+    event_numbers_.insert(event_numbers_.end(), numbers.begin(), numbers.begin() + met);
     found_.component = cw_adjoint_fault(run_, &found_.value);
   }
 

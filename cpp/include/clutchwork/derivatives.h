@@ -49,8 +49,8 @@ int cw_tangents_advance(cw_tangents* run, double t_end, const double* times, dou
 /* Take the oldest events out, at most `most`, and the derivatives of their times; returns how many. */
 int64_t cw_tangents_events(cw_tangents* run, double* events, double* tangents, int64_t most);
 
-/* Take the guards that were hit out, at most `most`; returns how many. */
-int64_t cw_tangents_grazes(cw_tangents* run, double* grazes, int64_t most);
+/* Take the guards that were hit out, at most `most`, and the derivatives of their times; returns how many. */
+int64_t cw_tangents_grazes(cw_tangents* run, double* grazes, double* tangents, int64_t most);
 
 /* Component that a status other than done is about, -1: none, and the value it is about. */
 int cw_tangents_fault(const cw_tangents* run, double* value);
@@ -87,8 +87,9 @@ int cw_adjoint_advance(cw_adjoint* run, double t_end, const double* times, doubl
 /* As cw_tangents_events, with the numbers on the tape of their times. */
 int64_t cw_adjoint_events(cw_adjoint* run, double* events, double* numbers, int64_t most);
 
-/* As cw_tangents_grazes, without what two events at one instant differ by. */
-int64_t cw_adjoint_grazes(cw_adjoint* run, double* grazes, int64_t most);
+/* As cw_tangents_grazes, with the numbers on the tape of their times, and without what two events at one instant differ
+   by. */
+int64_t cw_adjoint_grazes(cw_adjoint* run, double* grazes, double* numbers, int64_t most);
 
 /* Numbers on the tape. */
 int64_t cw_adjoint_numbers(const cw_adjoint* run);

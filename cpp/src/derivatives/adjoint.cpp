@@ -116,14 +116,15 @@ std::int64_t cw_adjoint_events(cw_adjoint* run, double* events, double* numbers,
   return n;
 }
 
-std::int64_t cw_adjoint_grazes(cw_adjoint* run, double* grazes, std::int64_t most) {
-  if (run == nullptr || most < 0 || (most > 0 && grazes == nullptr)) return -1;
+std::int64_t cw_adjoint_grazes(cw_adjoint* run, double* grazes, double* numbers, std::int64_t most) {
+  if (run == nullptr || most < 0 || (most > 0 && (grazes == nullptr || numbers == nullptr))) return -1;
   auto& moved = run->ws.moved;
   const std::int64_t n = smaller<std::int64_t>(moved.n, most);
   for (std::int64_t i = 0; i < n; ++i) {
     const Graze& g = moved.graze[i];
-    const double numbers[graze_size] = {g.time, g.what, g.component, g.index, g.together};
-    for (int j = 0; j < graze_size; ++j) grazes[i * graze_size + j] = numbers[j];
+    const double plain[graze_size] = {g.time, g.what, g.component, g.index, g.together};
+    for (int j = 0; j < graze_size; ++j) grazes[i * graze_size + j] = plain[j];
+    keep(moved.instant[i], numbers + i);
   }
   moved.n = 0;
   return n;

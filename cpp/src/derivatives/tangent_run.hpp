@@ -105,13 +105,14 @@ struct TangentCalls {
     return n;
   }
 
-  static std::int64_t grazes(void* at, double* grazes, std::int64_t most) {
+  static std::int64_t grazes(void* at, double* grazes, double* tangents, std::int64_t most) {
     auto& moved = run_at(at).ws.moved;
     const std::int64_t n = smaller<std::int64_t>(moved.n, most);
     for (std::int64_t i = 0; i < n; ++i) {
       const Graze& g = moved.graze[i];
       const double numbers[graze_size] = {g.time, g.what, g.component, g.index, g.together};
       for (int j = 0; j < graze_size; ++j) grazes[i * graze_size + j] = numbers[j];
+      keep(moved.instant[i], tangents + i * N);
     }
     moved.n = 0;
     return n;

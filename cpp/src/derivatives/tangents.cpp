@@ -63,9 +63,9 @@ std::int64_t cw_tangents_events(cw_tangents* run, double* events, double* tangen
   return calls().events(plain(run), events, tangents, most);
 }
 
-std::int64_t cw_tangents_grazes(cw_tangents* run, double* grazes, std::int64_t most) {
-  if (run == nullptr || most < 0 || (most > 0 && grazes == nullptr)) return -1;
-  return calls().grazes(plain(run), grazes, most);
+std::int64_t cw_tangents_grazes(cw_tangents* run, double* grazes, double* tangents, std::int64_t most) {
+  if (run == nullptr || most < 0 || (most > 0 && (grazes == nullptr || tangents == nullptr))) return -1;
+  return calls().grazes(plain(run), grazes, tangents, most);
 }
 
 int cw_tangents_fault(const cw_tangents* run, double* value) { return run == nullptr ? -1 : calls().fault(run, value); }

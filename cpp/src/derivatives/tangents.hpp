@@ -12,7 +12,7 @@ struct cw_tangent_calls {
   int (*advance)(void* run, double t_end, const double* times, double* rows, double* tangents, std::int64_t n,
                  std::int64_t* filled);
   std::int64_t (*events)(void* run, double* events, double* tangents, std::int64_t most);
-  std::int64_t (*grazes)(void* run, double* grazes, std::int64_t most);
+  std::int64_t (*grazes)(void* run, double* grazes, double* tangents, std::int64_t most);
   int (*fault)(const void* run, double* value);
   std::int64_t (*steps)(const void* run);
 };

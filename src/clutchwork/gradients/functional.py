@@ -19,7 +19,7 @@ Places = NDArray[np.intp]
 
 @dataclass
 class Functional:
-    """A weighted sum of numbers of rows, of times of events, and of the numbers by which is differentiated."""
+    """A weighted sum of numbers of rows, of times of events and guards, and of the free numbers themselves."""
 
     direct: Array  # of each number
     rows: list[Places] = field(default_factory=list)
@@ -35,7 +35,7 @@ class Functional:
         self.weights.append(np.ascontiguousarray(weights, dtype=float).ravel())
 
     def add_event(self, number: int, weight: float) -> None:
-        """Weight of the time of an event."""
+        """Weight of the time of an event; of a guard that was hit, whose numbers follow those of the events."""
         self.events.append((number, weight))
 
     def _flat(self) -> tuple[Places, Places, Array]:
@@ -49,7 +49,7 @@ class Functional:
     def along(self, rows: Array, events: Array) -> Array:
         """The derivatives by the numbers.
 
-        Parameters: rows, tangents of the numbers of all rows; events, those of the times of all events.
+        Parameters: rows, tangents of the numbers of all rows; events, those of the times of all events and guards.
         """
         row, column, weight = self._flat()
         found: Array = self.direct + weight @ rows[row, column]
@@ -58,7 +58,7 @@ class Functional:
         return found
 
     def into(self, rows: Array, events: Array) -> None:
-        """Add it to the weights of all numbers of rows and of all events."""
+        """Add it to the weights of all numbers of rows, and of all events and guards."""
         row, column, weight = self._flat()
         np.add.at(rows, (row, column), weight)
         for number, own in self.events:

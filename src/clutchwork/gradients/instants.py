@@ -1,4 +1,4 @@
-"""How the instants between two steps move with the numbers: docs/theory/gradients.md (14)."""
+"""How the instants between two steps move with the numbers: docs/theory/gradients.md (3)."""
 
 from __future__ import annotations
 
@@ -10,8 +10,6 @@ from clutchwork.gradients.primal import EVENT, KINK, KNOT, Primal
 
 Array = NDArray[np.float64]
 
-# jumps of accelerations, and of their slopes, that are more than what polynomials miss: of the larger side
-JUMP, BEND = 1e-6, 1e-4
 # of a speed: what slopes of rows do not see
 ROUND_OFF = 1e-14
 
@@ -19,12 +17,10 @@ ROUND_OFF = 1e-14
 def add_shift(primal: Primal, step: int, share: float, into: Functional) -> None:
     """Add a share of the derivative of the instant at which a step begins."""
     kind, number = (int(found[step]) for found in primal.between)
-    if kind == EVENT:
+    if kind in (EVENT, KINK):
         into.add_event(number, share)
     elif kind == KNOT and number >= 0:
         into.direct += share * primal.knots.moved[number]
-    elif kind == KINK:
-        _add_kink(primal, step, share, into)
 
 
 def missed(primal: Primal, step: int, *, at_end: bool) -> float:
@@ -52,27 +48,3 @@ def add_turn(primal: Primal, capacity: str, step: int, share: float, into: Funct
     if rate == 0.0:
         return
     into.add(rows, place, (-share / rate * steps.left[step])[:, None])
-
-
-def _add_kink(primal: Primal, step: int, share: float, into: Functional) -> None:
-    """The same of a piece of a law or a table, by what it bends: a speed, else an acceleration of some shaft."""
-    steps = primal.steps
-    before, behind = steps.rows[step - 1], steps.rows[step]
-    acceleration = primal.rows[:, primal.columns["acceleration"]]
-    jumps = steps.right[step - 1] @ acceleration[before], steps.left[step] @ acceleration[behind]
-    bends = steps.right_slope[step - 1] @ acceleration[before], steps.left_slope[step] @ acceleration[behind]
-    both = np.concatenate([acceleration[before], acceleration[behind]])
-    # what is small beside it in the same steps is what polynomials miss
-    sizes = np.abs(both).max(axis=0), np.abs(both).max(axis=0) / float(steps.length[step - 1 : step + 1].max())
-    for first, (left, right), size, least in (
-        (primal.columns["speed"], jumps, sizes[0], JUMP),
-        (primal.columns["acceleration"], bends, np.maximum(sizes[1], np.abs(bends).max(axis=0)), BEND),
-    ):
-        rise = left - right
-        relative = np.abs(rise) / np.maximum(size, 1e-9 * max(float(size.max(initial=0.0)), 1e-300))
-        shaft = int(np.argmax(relative))
-        if relative[shaft] > least:
-            column = np.array([first.start + shaft])
-            into.add(behind, column, (share / rise[shaft] * steps.left[step])[:, None])
-            into.add(before, column, (-share / rise[shaft] * steps.right[step - 1])[:, None])
-            return

@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from clutchwork.assembly.wiring import wiring
 from clutchwork.gradients.functional import Functional
-from clutchwork.gradients.instants import BEND, JUMP, add_shift
+from clutchwork.gradients.instants import add_shift
 from clutchwork.gradients.primal import EVENT, KNOT, SMOOTH, Primal
 from clutchwork.gradients.signals import add_signal
 from clutchwork.gradients.steps import Steps
@@ -20,6 +20,8 @@ if TYPE_CHECKING:
 
 Array = NDArray[np.float64]
 
+# jumps of accelerations, and of their slopes, that are more than what polynomials miss: of the larger side
+JUMP, BEND = 1e-6, 1e-4
 # what a cubic, which slopes of a dense output of fourth order are, misses of its own slope at an end, over its last
 # coefficient: seen at steps on shafts without inertia at tolerances from 1e-12 to 1e-8
 MISSED = 0.1

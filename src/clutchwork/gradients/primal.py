@@ -93,10 +93,11 @@ class Primal:
 
     @cached_property
     def between(self) -> tuple[Places, Places]:
-        """What each step begins with: its kind, and the number of the event or the knot, -1 of a knot that stays."""
+        """What each step begins with: its kind, and the number of the instant that moves, -1 of a knot that stays."""
         kinds, which = np.full(len(self.steps), SMOOTH, dtype=np.intp), np.full(len(self.steps), -1, dtype=np.intp)
-        # a knot that does not move is none of those below
-        met = [(KNOT if what < 0 else KINK, float(time), -1) for time, what in self.grazes[:, :2]]
+        # a knot that does not move is none of those below; guards are numbered behind the events
+        guards = enumerate(self.grazes[:, :2].tolist(), len(self.events))
+        met = [(KNOT, time, -1) if what < 0 else (KINK, time, number) for number, (time, what) in guards]
         met += [(KNOT, float(time), number) for number, time in enumerate(self.knots.times)]
         met += [(EVENT, float(time), number) for number, time in enumerate(self.events[:, 0])]
         for kind, time, number in met:

@@ -156,7 +156,7 @@ class Runs:
         if moved is not None:
             return self.taped(moved)
         primal = self._primal(point, rows, events, grazes)
-        slope = partial(_back, tape, point.slopes, primal.rows.shape, len(events))
+        slope = partial(_back, tape, point.slopes, primal.rows.shape, len(events) + len(grazes))
         return Run(primal, slope, is_forward=False, notes=point.notes)
 
     @cached_property

@@ -125,7 +125,9 @@ void note_graze(Workspace<T>& ws, int what, int component, double index, const T
   const bool together = ws.time - m.last_time <= 1e-9 * (1 + abs(ws.time));
   const double apart = together ? largest_difference(shift, m.last) : 0.0;
   m.last = shift, m.last_time = ws.time;
-  if (m.n < Moved<T>::room) m.graze[m.n++] = {ws.time, double(what), double(component), index, apart};
+  if (m.n == Moved<T>::room) return;
+  m.instant[m.n] = shift;
+  m.graze[m.n++] = {ws.time, double(what), double(component), index, apart};
 }
 
 /// Borders of a guard at which the present state is, and which move with the numbers: on which side it is is open.
@@ -147,7 +149,9 @@ void note_borders_of(Form& form, Step<Form>& step, int place) {
       if (abs(value(margin)) > near * G::scale(form, hit, step.y0())) return;
       // as one that is met together with what does not move
       ws.moved.last = T(0), ws.moved.last_time = ws.time;
+      const int noted = ws.moved.n;
       note_graze(ws, place, G::component(ws, hit), infinity, margin);
+      if (ws.moved.n > noted) ws.moved.instant[noted] = T(0);
       if (looks[1] == 0) return;
     }
   });

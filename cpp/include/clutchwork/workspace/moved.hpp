@@ -42,8 +42,9 @@ struct Moved {
   double last_time = -infinity;     ///< [s] of the event before
   T* event = nullptr;               ///< of each event in the buffer
   Graze* graze = nullptr;
-  T* points = nullptr;  ///< of the curves
-  T* row = nullptr;     ///< one row of output
+  T* instant = nullptr;  ///< [s] derivatives of the instant of each of them
+  T* points = nullptr;   ///< of the curves
+  T* row = nullptr;      ///< one row of output
   int n = 0;
   Workspace<double>* plain = nullptr;    ///< its image without derivatives
   double span = 0;                       ///< [s] steps that are taken where an event is met
@@ -66,6 +67,7 @@ struct Moved {
     const auto unknowns = s.full ? s.speeds + s.states : 0;
     Jacobian<double>::lay_out(p.other, a, s), a.scratch(p.other_whole, unknowns * unknowns);
     a.scratch(p.event, EventBuffer::room + 3 * s.contacts), a.scratch(p.graze, room);
+    a.scratch(p.instant, room);
   }
 };
 
