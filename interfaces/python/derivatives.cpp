@@ -71,10 +71,10 @@ bool run_chunk(const nb::bytes& system, const Words& words, const Seeds& seeds, 
     }
   }
   // memory that has been touched is much faster than new one
-  static thread_local std::vector<double> parts;
+  static thread_local std::vector<double> parts, events(std::size_t(events_at_once * event_columns)),
+      event_parts(std::size_t(events_at_once * width)), grazes(std::size_t(most_grazes * CW_GRAZE)),
+      graze_parts(std::size_t(most_grazes * width));
   parts.resize(std::max(parts.size(), std::size_t(k * row * width)));
-  std::vector<double> events(std::size_t(events_at_once * event_columns));
-  std::vector<double> event_parts(std::size_t(events_at_once * width));
   found.rows.resize(std::size_t(k * row)), found.events.clear(), found.filled = 0;
   std::int64_t n_events = 0;
   do {
@@ -94,7 +94,6 @@ bool run_chunk(const nb::bytes& system, const Words& words, const Seeds& seeds, 
   } while (found.status == int(clutchwork::Status::events_full));
   for (std::int64_t i = 0; i < found.filled * row; ++i)
     std::copy_n(parts.data() + i * width, used, slopes.data() + i * n + first);
-  std::vector<double> grazes(std::size_t(most_grazes * CW_GRAZE)), graze_parts(std::size_t(most_grazes * width));
   const std::int64_t met = cw_tangents_grazes(run, grazes.data(), graze_parts.data(), most_grazes);
   // their instants follow those of the events
   moved.resize(std::max(moved.size(), std::size_t((n_events + met) * n)));

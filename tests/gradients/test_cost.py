@@ -63,6 +63,16 @@ def test_what_begins_late_is_zero_until_then_and_the_same_beside_what_begins_ear
     assert np.all(np.abs(alone - among).max(axis=0) <= 1e-5 * scale)
 
 
+def test_what_acts_for_a_while_is_zero_until_then_and_goes_on_behind_it() -> None:
+    # a clutch that sticks at first, and slips less and less
+    model, late = six_speed.gearbox(six_speed.SHIFT).assemble(), "F2.friction.static"
+    of = cw.at("w8.speed", [1.0, 2.4, 2.7, 4.0])
+    functions = [cw.differentiable(model, 4.0, of=of, by=by, **LOOSE) for by in ([late], [late, "F1.gain"])]
+    alone, among = (f.jacobian(f.x0)[:, 0] for f in functions)
+    assert alone[0] == 0.0
+    assert np.abs(alone - among).max() <= 1e-6 * np.abs(among).max()
+
+
 def tape_of(model: cw.System, by: str) -> int:
     """Nodes on the tape of a run that is followed back."""
     runs = cw.differentiable(model, 4.0, of="w8.speed", by=by, **LOOSE).engine.runs

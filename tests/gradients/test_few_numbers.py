@@ -68,3 +68,16 @@ def test_a_run_that_is_followed_back_says_the_same(beside: int) -> None:
             one.add(np.array([row]), np.array([column]), np.ones((1, 1)))
             along, followed = forward.slope(one), back.slope(one)
             assert np.all(np.abs(along - followed) <= APART * np.abs(along).max())
+
+
+def test_a_torque_that_the_motion_hardly_feels_takes_steps_of_its_own() -> None:
+    """Steps are long where it counts for nothing; its derivative is (1 - cos(w t)) / (J w)."""
+    inertia, times = 0.5, np.array([0.13, 0.37, 0.77])
+    d = cw.Driveline("shaken")
+    a = d.shaft("a", inertia=inertia, speed=10.0)
+    d.add(cw.Torque("drive", shaft=a, torque=cw.Sine(amplitude=1e-4, frequency=5.0, offset=1.0)))
+    bare: dict[str, Any] = {**TIGHT, "work": False, "angles": False}
+    f = cw.differentiable(d, 1.0, of=cw.at("a.speed", times), by="drive.torque.amplitude", **bare)
+    rate = 2 * np.pi * 5.0
+    exact = (1.0 - np.cos(rate * times)) / (inertia * rate)
+    assert np.all(np.abs(f.jacobian(f.x0)[:, 0] - exact) <= 1e-8 * exact.max())

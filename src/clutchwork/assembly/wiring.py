@@ -96,6 +96,11 @@ class Wiring:
         """Numbers in one output row."""
         return max((part.stop for part in self.columns.values()), default=0)
 
+    @cached_property
+    def kinds(self) -> tuple[str, ...]:
+        """The part of an output row that each of its numbers is in."""
+        return tuple(name for name, part in self.columns.items() for _ in range(part.start, part.stop))
+
     @property
     def lines(self) -> tuple[GearRow, ...]:
         """Rigid lines, whose energy is integrated, in the order of their column."""

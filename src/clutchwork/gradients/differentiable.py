@@ -199,7 +199,7 @@ def _line(given: Any, count: int, name: str, what: str) -> Array:
         line = np.array(given, dtype=float)
     except (TypeError, ValueError):
         line = np.zeros(0)
-    if line.shape != (count,) or not np.all(np.isfinite(line)):
+    if line.shape != (count,) or not np.isfinite(line).all():
         raise UseError("f", [f"{name} is {quote(given)}: give a finite number for each {what}, {count} in all"])
     return line
 

@@ -6,7 +6,9 @@ derivative. docs/theory/gradients.md (17)
 
 from __future__ import annotations
 
+from bisect import bisect_right
 from collections.abc import Iterator, Sequence
+from functools import cached_property
 from itertools import chain
 from typing import NamedTuple
 
@@ -31,6 +33,8 @@ from clutchwork.gradients.runs import Run, RunPoint, Runs
 
 Mask = NDArray[np.bool_]
 
+# arrays without which no number changes how a run starts, and which loads press
+STARTS = ("segment_coef", "contact_rate_value", "initial_speed", "initial_state")
 # a state that starts so many steps beside zero passes it where an event is seen
 BEHIND_THE_START = 1e3
 
@@ -55,11 +59,10 @@ class Doubts:
     point: RunPoint
     run: Run
     lines: Sequence[Line]
-    sizes: NDArray[np.float64]  # of the numbers
 
     def found(self) -> Iterator[Doubt]:
         """One by one, of values that exist."""
-        if not self.lines or not len(self.sizes):
+        if not self.lines or not len(self.point.x):
             return
         yield from self._asked_at_events()
         yield from self._asked_at_knots()
@@ -71,7 +74,7 @@ class Doubts:
 
     @property
     def _all(self) -> Mask:
-        return np.ones(len(self.sizes), dtype=bool)
+        return np.ones(len(self.point.x), dtype=bool)
 
     def _moving_event(self, number: int) -> Mask:
         """Numbers that move an event."""
@@ -82,12 +85,18 @@ class Doubts:
 
     def _moving_events(self, time: float) -> Mask:
         """Numbers that move any event at an instant [s]."""
-        there = np.flatnonzero(self._is_at(time))
-        found: Mask = np.logical_or.reduce([~self._all, *(self._moving_event(int(number)) for number in there)])
+        found: Mask = np.logical_or.reduce([~self._all, *map(self._moving_event, self._is_at(time))])
         return found
 
-    def _is_at(self, time: float) -> Mask:
-        found: Mask = np.abs(self.run.primal.events[:, 0] - time) <= SAME * (1.0 + abs(time))
+    def _is_at(self, time: float) -> list[int]:
+        """Events at an instant [s]."""
+        room = SAME * (1.0 + abs(time))
+        return [number for number, other in enumerate(self._instants) if abs(other - time) <= room]
+
+    @cached_property
+    def _instants(self) -> list[float]:
+        """When events are [s]."""
+        found: list[float] = self.run.primal.events[:, 0].tolist()
         return found
 
     def _moving_knots(self) -> Mask:
@@ -109,7 +118,7 @@ class Doubts:
 
     def _asked_at_events(self) -> Iterator[Doubt]:
         for number, line in enumerate(self.lines):
-            if line.at is not None and self._is_at(line.at).any():
+            if line.at is not None and self._is_at(line.at):
                 why = f"{line.name} is asked for at the instant of an event, {line.at:.9g} s, which moves"
                 yield Doubt(f"{why}; ask before or behind it", self._only(number), self._moving_events(line.at))
 
@@ -138,22 +147,25 @@ class Doubts:
 
     def _decisions(self) -> Iterator[Doubt]:
         primal, system, contacts = self.run.primal, self.runs.task.system, self.runs.wanted.contacts
-        knots, size = times_of(self.point.chart, self.point.words, primal.t_end), float(self.sizes.max())
-        apart = moving_apart(system, primal.grazes, primal.decided, self.runs.wanted.begin, size)
+        knots, sizes = times_of(self.point.chart, self.point.words, primal.t_end), self.point.sizes
+        inside = knots[bisect_right(knots, self.runs.wanted.begin) :]
+        apart = moving_apart(system, primal.grazes, primal.decided, self.runs.wanted.begin, sizes)
         for time, why in chain(refused(system, primal.decided), apart):
             yield Doubt(why, self._up_to(time), self._all)
-        for time, why in jumping_together(system, primal.grazes, size):
+        for time, why in jumping_together(system, primal.grazes, sizes):
             yield Doubt(why, self._up_to(time), self._moving_knots())
         found = chain(
             crowded(primal.events, contacts),
             struck_together(system, primal.events, contacts),
-            decided_at_knots(primal.events, primal.grazes, knots[knots > self.runs.wanted.begin], contacts),
+            decided_at_knots(primal.events, primal.grazes, inside, contacts),
         )
         for time, why in found:
             yield Doubt(why, self._up_to(time), self._all)
 
     def _start(self) -> Iterator[Doubt]:
         chart, words = self.point.chart, self.point.words
+        if chart.stays(*STARTS):
+            return
         names = [one.name for one in self.runs.task.parameters]
         begin, end = self.runs.wanted.begin, self.runs.wanted.t_end
         for time, why, numbers in unpressed(chart, words, self.point.slopes, names, begin, end):

@@ -94,7 +94,7 @@ class Exact:
     def gradient(self, x: Array) -> GradientValues:
         """Values and derivatives at a point, NaN for one that does not exist; NoGradient where there is none at all."""
         found = self._found(x)
-        if found.matrix.size and np.all(np.isnan(found.matrix)):
+        if found.problems and found.matrix.size and np.isnan(found.matrix).all():
             raise NoGradient(found.problems)
         return found
 
@@ -146,7 +146,7 @@ class Exact:
 
     def _is_rough(self, point: RunPoint, run: Run, one: Measure) -> bool:
         allowed = UNKNOWN if one.is_massless else self._asked.unknown
-        return bool(one.missed) and bool(np.any(unknown(run, one, self.runs.sizes(point.x)) > allowed))
+        return bool(one.missed) and bool(np.any(unknown(run, one, point.sizes) > allowed))
 
     # ---------------------------------------------------------------------------------------------------- at one point
 
@@ -165,7 +165,7 @@ class Exact:
         self, x: Array, beside: Beside, known: list[Line], doubts: list[Doubt], notes: tuple[str, ...]
     ) -> GradientValues:
         values, matrix = np.array([one.value for one in known]), np.array([one.left for one in known])
-        if not doubts and all(one.left is one.right for one in known) and np.all(np.isfinite(matrix)):
+        if not doubts and all(one.left is one.right for one in known) and np.isfinite(matrix).all():
             return GradientValues(values, matrix, notes)
         settling = Settling.of(self.task, x, self.runs.sizes(x), known, doubts)
         settling.settle(beside)
@@ -225,7 +225,7 @@ class Exact:
 
     def _lines(self, point: RunPoint) -> tuple[Run, list[Line]]:
         run, outputs = self._run(point, len(self.task.labels)), self.task.outputs
-        return run, lines(run, outputs, self.task.labels, self._asked, self.runs.sizes(point.x))
+        return run, lines(run, outputs, self.task.labels, self._asked, point.sizes)
 
     def _run(self, point: RunPoint, results: int) -> Run:
         """A run, followed back where results are few and numbers many."""
@@ -241,7 +241,7 @@ class Exact:
         return len(x) >= FOLLOWED_FROM + FOLLOWED_FOR_EACH * results
 
     def _doubts(self, point: RunPoint, run: Run, found: list[Line]) -> list[Doubt]:
-        return list(Doubts(self.runs, point, run, found, self.runs.sizes(point.x)).found())
+        return list(Doubts(self.runs, point, run, found).found())
 
     def _beside(self, x: Array, number: int | None) -> list[Line] | None:
         """Lines of a run beside the point, by one number alone where it is given; None where there is no run."""

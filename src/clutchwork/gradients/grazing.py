@@ -5,6 +5,7 @@ docs/theory/gradients.md (6)
 
 from __future__ import annotations
 
+from bisect import bisect_left
 from collections.abc import Iterator, Sequence
 from functools import cache
 from typing import TYPE_CHECKING
@@ -85,13 +86,17 @@ def together(grazes: Array, decided: Array) -> bool:
 
 
 def decided(grazes: Array, events: Array) -> Array:
-    """Those that made a contact stick, slip, close, open or jam.
+    """Those that made a contact stick, slip, close, open or jam, of those that hardly did or met others.
 
     What passes from one piece of a law or a table to the next, and what bounces, may do so slowly: the motion goes on
     as it was, or jumps by less the slower it is.
     """
     deciders = guards("decides")
-    known = [number for number, kind in enumerate(grazes[:, KIND].tolist()) if kind in deciders]
+    known = [
+        number
+        for number, graze in enumerate(grazes.tolist())
+        if (graze[INDEX] < WARNED or graze[DIFFERENCE]) and graze[KIND] in deciders
+    ]
     if not known:
         return grazes[:0]
     is_change = (events[:, AT["from"]] != events[:, AT["to"]]) | (events[:, AT["cause"]] == JAM)
@@ -103,8 +108,10 @@ def decided(grazes: Array, events: Array) -> Array:
 
 def refused(system: System, decided: Array) -> Iterator[tuple[float, str]]:
     """Why derivatives from some instants [s] on may not exist: what decided only just touched zero."""
-    for graze in decided[decided[:, INDEX] < REFUSED]:
-        time, name = float(graze[TIME]), component(system, int(graze[COMPONENT]), int(graze[KIND]))
+    for graze in decided.tolist():
+        if not graze[INDEX] < REFUSED:
+            continue
+        time, name = graze[TIME], component(system, int(graze[COMPONENT]), int(graze[KIND]))
         measure = f"abs(dg/dt)/scale = {graze[INDEX]:.2g} 1/s, below {REFUSED:g} 1/s"
         remedy = "move a number so that it passes clearly, or not at all"
         why = "only just touches zero, so the time of this event has no derivative"
@@ -112,17 +119,17 @@ def refused(system: System, decided: Array) -> Iterator[tuple[float, str]]:
 
 
 def moving_apart(
-    system: System, grazes: Array, decided: Array, begin: float, sizes: float
+    system: System, grazes: Array, decided: Array, begin: float, sizes: Array
 ) -> Iterator[tuple[float, str]]:
     """What is hit at one instant [s] but not beside it: by the order other pieces and modes may follow.
 
-    Parameters: decided, those of the grazes that did; begin, of the run [s], where one is enough; sizes, the largest
-    size of a number, by which derivatives of instants become times.
+    Parameters: decided, those of the grazes that did; begin, of the run [s], where one is enough; sizes of the numbers,
+    by the largest of which derivatives of instants become times.
     """
-    if not grazes[:, DIFFERENCE].any():
+    if not any(graze[DIFFERENCE] for graze in grazes.tolist()):
         return
     met = np.concatenate([decided, grazes[_on_borders(grazes)]])
-    for graze in np.unique(met[met[:, DIFFERENCE] * sizes > APART], axis=0):
+    for graze in np.unique(met[met[:, DIFFERENCE] * sizes.max() > APART], axis=0):
         time, name = float(graze[TIME]), component(system, int(graze[COMPONENT]), int(graze[KIND]))
         if graze[KIND] in loads() and graze[INDEX] == np.inf:
             yield time, f"the load of {name} is zero from {time:.9g} s on, and a little more turns it either way"
@@ -135,13 +142,13 @@ def moving_apart(
             yield time, what
 
 
-def jumping_together(system: System, grazes: Array, sizes: float) -> Iterator[tuple[float, str]]:
+def jumping_together(system: System, grazes: Array, sizes: Array) -> Iterator[tuple[float, str]]:
     """Signals that jump at one instant, and whose knots move apart: which of them jumps first is open.
 
-    Parameters: sizes, the largest size of a number.
+    Parameters: sizes of the numbers.
     """
     for graze in grazes.tolist():
-        if graze[KIND] >= 0 or graze[DIFFERENCE] * sizes <= APART:
+        if graze[KIND] >= 0 or graze[DIFFERENCE] * sizes.max() <= APART:
             continue
         time, name = float(graze[TIME]), component(system, int(graze[COMPONENT]), int(graze[KIND]))
         yield time, f"{name} jumps at {time:.9g} s together with another signal, whose knot moves otherwise; move one"
@@ -151,7 +158,7 @@ def crowded(events: Array, contacts: Sequence[str]) -> Iterator[tuple[float, str
     """Contacts that lock and break away repeatedly within an instant, where no derivative exists."""
     if len(events) < CROWD:
         return
-    changed = _locking(events)
+    changed = events[(events[:, AT["from"]] == LOCKED) != (events[:, AT["to"]] == LOCKED)]
     for number, name in enumerate(contacts) if len(changed) >= CROWD else ():
         times = np.sort(changed[changed[:, AT["contact"]] == number, AT["time"]])
         close = np.flatnonzero(times[CROWD - 1 :] - times[: max(0, len(times) - CROWD + 1)] < CROWDED)
@@ -185,34 +192,27 @@ def _struck(hit: Array, contacts: Sequence[str]) -> Iterator[tuple[float, str]]:
 
 
 def decided_at_knots(
-    events: Array, grazes: Array, knots: Array, contacts: Sequence[str]
+    events: Array, grazes: Array, knots: Sequence[float], contacts: Sequence[str]
 ) -> Iterator[tuple[float, str]]:
     """Contacts that lock or break away where a signal bends: whether the knot or the event comes first is undecided.
 
-    Parameters: knots, instants of all [s]. Where a signal jumps the knot is what makes them do so.
+    Parameters: knots, instants of all in order [s]. Where a signal jumps the knot is what makes them do so.
     """
-    changed = _locking(events)
-    close = changed[_near(changed[:, AT["time"]], knots)] if len(changed) else changed
-    jumps = grazes[grazes[:, KIND] < 0, TIME] if len(close) else knots
-    for event in close:
-        time = float(event[AT["time"]])
-        if event[AT["cause"]] in DRIVEN and _near(event[[AT["time"]]], jumps)[0]:
+    for event in events.tolist():
+        time = event[AT["time"]]
+        if (event[AT["from"]] == LOCKED) == (event[AT["to"]] == LOCKED) or not _is_near(time, knots):
+            continue
+        if event[AT["cause"]] in DRIVEN and _is_near(time, sorted(grazes[grazes[:, KIND] < 0, TIME].tolist())):
             continue
         what = "locks" if event[AT["to"]] == LOCKED else "breaks away"
         yield time, f"{contacts[int(event[AT['contact']])]} {what} at {time:.9g} s, where a signal bends; move the knot"
 
 
-def _locking(events: Array) -> Array:
-    """Those that lock a contact or let it go."""
-    found: Array = events[(events[:, AT["from"]] == LOCKED) != (events[:, AT["to"]] == LOCKED)]
-    return found
-
-
-def _near(times: Array, others: Array) -> NDArray[np.bool_]:
-    """Which instants are among others."""
-    apart = np.abs(times[:, None] - others).min(axis=1, initial=np.inf)
-    found: NDArray[np.bool_] = apart <= ONE_INSTANT * (1.0 + np.abs(times))
-    return found
+def _is_near(time: float, others: Sequence[float]) -> bool:
+    """Whether an instant is among others, which are in order."""
+    room = ONE_INSTANT * (1.0 + abs(time))
+    place = bisect_left(others, time - room)
+    return place < len(others) and others[place] <= time + room
 
 
 @memoize
@@ -235,13 +235,13 @@ def noted(system: System, grazes: Array, decided: Array) -> Iterator[str]:
 
     Parameters: decided, those of the grazes that are.
     """
-    for graze in grazes[grazes[:, INDEX] < TOUCHED]:
-        if graze[KIND] not in guards("next piece"):
+    for graze in grazes.tolist():
+        if not graze[INDEX] < TOUCHED or graze[KIND] not in guards("next piece"):
             continue
         name = component(system, int(graze[COMPONENT]), int(graze[KIND]))
         measure = f"abs(dg/dt)/scale = {graze[INDEX]:.2g} 1/s, below {TOUCHED:g} 1/s"
         yield f"{name} at {graze[TIME]:.9g} s hardly enters another piece: {measure}; derivatives have few digits"
-    for graze in decided:
+    for graze in decided.tolist():
         if REFUSED <= graze[INDEX] < WARNED:
             name = component(system, int(graze[COMPONENT]), int(graze[KIND]))
             measure = f"abs(dg/dt)/scale = {graze[INDEX]:.2g} 1/s, below {WARNED:g} 1/s"

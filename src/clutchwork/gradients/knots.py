@@ -7,6 +7,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
+from clutchwork.base.memoize import memoize
+from clutchwork.gradients.assembled import words_of
 from clutchwork.gradients.primal import Knots
 from clutchwork.gradients.words import Chart, Slopes
 
@@ -15,9 +17,10 @@ if TYPE_CHECKING:
 
 Array = NDArray[np.float64]
 
+# arrays that say when knots are
+TIMES = ("segment_time", "input_period")
 # repetitions of a signal that are looked at
 MOST_REPEATS = 100_000
-
 
 # knots that are as close are at one instant, and derivatives of instants that are as alike move together
 ONE_INSTANT, ALIKE = 1e-12, 1e-9
@@ -25,9 +28,11 @@ ONE_INSTANT, ALIKE = 1e-12, 1e-9
 
 def knots(chart: Chart, words: Array, slopes: Slopes, begin: float, end: float) -> Knots:
     """All that move, up to the end of a run, and where they meet others."""
-    (first, pieces), (at_period, signals) = map(chart.words_in, ("segment_time", "input_period"))
+    (first, pieces), (at_period, signals) = map(chart.words_in, TIMES)
     width = slopes.matrix.shape[1]
-    if not slopes.matrix[slopes.within(first, pieces)].any() and not slopes.touch(at_period, signals):
+    if chart.stays(*TIMES) or not (
+        slopes.matrix[slopes.within(first, pieces)].any() or slopes.touch(at_period, signals)
+    ):
         return Knots(np.zeros(0), np.zeros((0, width)), np.zeros(0))
     times, moved = [np.zeros(0)], [np.zeros((0, width))]
     for number, (segment, count) in enumerate(_segments(chart.assembled.system)):
@@ -39,17 +44,26 @@ def knots(chart: Chart, words: Array, slopes: Slopes, begin: float, end: float) 
     return _met(np.concatenate(times), np.concatenate(moved), begin, end)
 
 
-def times_of(chart: Chart, words: Array, end: float) -> Array:
-    """Instants of the knots of all signals up to the end of a run [s]."""
-    (first, pieces), (at_period, signals) = map(chart.words_in, ("segment_time", "input_period"))
-    if not np.any(words[at_period : at_period + signals] > 0.0):
-        return words[first : first + pieces]
+def times_of(chart: Chart, words: Array, end: float) -> list[float]:
+    """Instants of the knots of all signals up to the end of a run [s], in order."""
+    return _still_times(chart, end) if chart.stays(*TIMES) else _times(chart, words, end)
+
+
+@memoize
+def _still_times(chart: Chart, end: float) -> list[float]:
+    return _times(chart, words_of(chart.assembled.system), end)
+
+
+def _times(chart: Chart, words: Array, end: float) -> list[float]:
+    (first, pieces), (at_period, signals) = map(chart.words_in, TIMES)
+    if max(words[at_period : at_period + signals].tolist(), default=0.0) <= 0.0:
+        return sorted(words[first : first + pieces].tolist())
     found = [np.zeros(0)]
     for number, (segment, count) in enumerate(_segments(chart.assembled.system)):
         begins, period = words[first + segment : first + segment + count], float(words[at_period + number])
         cycles = np.arange(_repeats(float(begins.min(initial=end)), period, end) + 1.0)
         found.append((begins + cycles[:, None] * period).ravel())
-    return np.concatenate(found)
+    return sorted(np.concatenate(found).tolist())
 
 
 def _repeats(begin: float, period: float, end: float) -> int:

@@ -121,15 +121,10 @@ def unknown(run: Run, one: Measure, sizes: Array) -> Array:
 
 def _size(primal: Primal, columns: Places, time: float) -> float:
     """That of some numbers of a row, with a share of the largest one of their kind there: they may pass zero."""
-    row, own = primal.rows[primal.row(time)], columns.tolist()
-    used = {
-        (part.start, part.stop)
-        for part in primal.columns.values()
-        for column in own
-        if part.start <= column < part.stop
-    }
-    largest = max((abs(number) for first, end in used for number in row[first:end].tolist()), default=0.0)
-    return max(float(np.abs(row[columns]).max(initial=0.0)), PASSES * largest)
+    row, own = primal.rows[primal.row(time)].tolist(), columns.tolist()
+    used = {primal.kinds[column] for column in own}
+    largest = max((abs(number) for part in used for number in row[primal.columns[part]]), default=0.0)
+    return max(max((abs(row[column]) for column in own), default=0.0), PASSES * largest)
 
 
 def _of_its_kind(primal: Primal, one: Measure) -> float:

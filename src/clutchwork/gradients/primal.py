@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from functools import cached_property
 from typing import TYPE_CHECKING
 
@@ -54,6 +54,7 @@ class Primal:
     bent: Mapping[str, Array]  # derivatives of signals in all rows by numbers that are in their forms
     numbers: int  # by which is differentiated
     columns: Mapping[str, slice]  # parts of a row
+    kinds: Sequence[str]  # of each number of a row its part
     t_end: float  # s
 
     def functional(self) -> Functional:
@@ -62,11 +63,11 @@ class Primal:
 
     def row(self, time: float) -> int:
         """The row of an instant."""
-        return int(np.searchsorted(self.times, time))
+        return int(self.times.searchsorted(time))
 
     @cached_property
     def decided(self) -> Array:
-        """Guards that decided about contacts."""
+        """Guards that decided about contacts, of those that hardly did or met others."""
         return decided(self.grazes, self.events)
 
     @cached_property

@@ -9,7 +9,7 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from clutchwork.assembly.wiring import wiring
+from clutchwork.assembly.wiring import Wiring, wiring
 from clutchwork.base.classes import dataclass
 from clutchwork.declare.core import derivatives
 from clutchwork.declare.layout import DONE, INTERRUPTED
@@ -43,6 +43,7 @@ class RunPoint(NamedTuple):
     """A point with what is known of its run before it is differentiated."""
 
     x: Array
+    sizes: Array  # of the numbers
     chart: Chart
     words: Array
     slopes: Slopes
@@ -119,7 +120,8 @@ class Runs:
         chart, words = self.words.at(x)
         slopes = chart.slopes(x)
         moving = knots(chart, words, slopes, self.wanted.begin, self.wanted.t_end)
-        point = RunPoint(x, chart, words, slopes, moving, NO_STEPS, np.zeros(0), {}, self.wanted.grid, ())
+        known = x, self.sizes(x), chart, words, slopes, moving
+        point = RunPoint(*known, NO_STEPS, np.zeros(0), {}, self.wanted.grid, ())
         if not self.plain.in_steps:
             return point
         run, steps, jerks = self.plain.with_steps(point.system, self.signals.at(x))
@@ -143,7 +145,7 @@ class Runs:
     def taped(self, point: RunPoint) -> Run:
         """A run that is followed back from each result; forward where there is no memory for it."""
         places = point.slopes.places.astype(np.int64)
-        probes = point.slopes.matrix @ (self.sizes(point.x) * self._shares)
+        probes = point.slopes.matrix @ (point.sizes * self._shares)
         for size in TAPES:
             tape = derivatives().Adjoint(point.system, places, probes, *self._how(point), size)
             status, _, rows, events, grazes, fault = tape.found()
@@ -173,13 +175,20 @@ class Runs:
 
     def _how(self, point: RunPoint) -> tuple[Any, ...]:
         """Instants, options and sizes of both kinds of runs with derivatives."""
-        options = list(self._options.items())
-        return point.grid, self.wanted.t_end, options, wiring(self.task.system).row_size, self._has_work
+        return point.grid, self.wanted.t_end, self._told, self._wiring.row_size, self._has_work
+
+    @cached_property
+    def _wiring(self) -> Wiring:
+        return wiring(self.task.system)
+
+    @cached_property
+    def _told(self) -> list[tuple[str, float]]:
+        return list(self._options.items())
 
     @cached_property
     def _has_work(self) -> bool:
         """Whether any output is made of angles or work; their derivatives are left out elsewhere."""
-        columns = wiring(self.task.system).columns
+        columns = self._wiring.columns
         integrals = {place for part in INTEGRALS for place in range(columns[part].start, columns[part].stop)}
         return not integrals.isdisjoint(all_reads(self.signals.plain.values()))
 
@@ -208,7 +217,8 @@ class Runs:
             forms=self.signals.at(point.x),
             bent=self.signals.bent(point.x, rows),
             numbers=len(point.x),
-            columns=wiring(self.task.system).columns,
+            columns=self._wiring.columns,
+            kinds=self._wiring.kinds,
             t_end=self.wanted.t_end,
         )
 

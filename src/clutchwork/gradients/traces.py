@@ -6,7 +6,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from clutchwork.gradients.runs import Run
-from clutchwork.gradients.signals import signal_at
 from clutchwork.sweeps.outputs import AtEnd, AtTimes
 
 Array = NDArray[np.float64]
@@ -16,10 +15,12 @@ Places = NDArray[np.intp]
 def trace(run: Run, one: AtTimes | AtEnd) -> tuple[Places, Array, Array]:
     """Columns, values and derivatives of a signal at its instants, or at the end, of a forward run."""
     primal, tangents = run.primal, run.tangents
-    rows = np.searchsorted(primal.times, one.times if isinstance(one, AtTimes) else [primal.t_end])
-    known, matrix = primal.forms[one.signal].weights(primal.rows[rows]), np.zeros((len(rows), primal.numbers))
+    end = primal.row(primal.t_end)
+    rows = primal.times.searchsorted(one.times) if isinstance(one, AtTimes) else slice(end, end + 1)
+    form, picked = primal.forms[one.signal], primal.rows[rows]
+    known, matrix = form.weights(picked), np.zeros((len(picked), primal.numbers))
     for column, line in zip(known.columns.tolist(), known.values.T, strict=True):
         matrix += line[:, None] * tangents[rows, column]
     if one.signal in primal.bent:
         matrix += primal.bent[one.signal][rows]
-    return known.columns, signal_at(primal, one.signal, rows), matrix
+    return known.columns, np.asarray(form(picked), dtype=float), matrix

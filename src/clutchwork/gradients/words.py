@@ -85,7 +85,21 @@ class Chart:
 
     def words_in(self, name: str) -> tuple[int, int]:
         """The first word of an array of a System, and how many there are."""
-        return self.assembled.system.starts[name] // 8, self.assembled.system.arrays[name].size
+        return self._arrays[name]
+
+    @cached_property
+    def _arrays(self) -> dict[str, tuple[int, int]]:
+        system = self.assembled.system
+        return {name: (system.starts[name] // 8, array.size) for name, array in system.arrays.items()}
+
+    def stays(self, *names: str) -> bool:
+        """Whether it is known once for all points that nothing in these arrays changes."""
+        return self._still.issuperset(names)
+
+    @cached_property
+    def _still(self) -> frozenset[str]:
+        same = self._same
+        return frozenset(name for name, part in self._arrays.items() if same is not None and not same.touch(*part))
 
     @classmethod
     def of(cls, system: System, parameters: tuple[Tunable, ...], x: Array) -> Chart:
@@ -145,13 +159,12 @@ class Chart:
 
     def _follows(self, x: Array) -> bool:
         """Whether the words at a point follow alike: at zero a number may be at a kink."""
-        changed = np.sign(x) != self._signs
-        alike = not (changed.any() and changed[list(self.fixed)].any())
+        alike = all(_sign(float(x[number])) == sign for number, sign in self._signs)
         return alike and all(table.holds(x) for table in self.tables)
 
     @cached_property
-    def _signs(self) -> Array:
-        return np.sign(self.assembled.start)
+    def _signs(self) -> list[tuple[int, int]]:
+        return [(number, _sign(float(self.assembled.start[number]))) for number in self.fixed]
 
     def slopes(self, x: Array) -> Slopes:
         """Derivatives of the words at a point; NoGradient where there is none."""
@@ -198,9 +211,8 @@ class Words:
 
     def _check(self, x: Array) -> None:
         """Refuse what a driveline with these values refuses, in its words."""
-        lower, upper = self._bounds
-        beyond = (x < lower).any() or (x > upper).any() or (x[self._pressing] < 0.0).any()
-        if beyond or not all(_fits(x, *rule) for rule in self._rules):
+        within = all(lower <= value <= upper for value, (lower, upper) in zip(x.tolist(), self._bounds, strict=True))
+        if not within or not all(_fits(x, *rule) for rule in self._rules):
             self.assembled(x)
 
     @cached_property
@@ -227,8 +239,11 @@ class Words:
         return found
 
     @cached_property
-    def _bounds(self) -> tuple[Array, Array]:
-        return np.array([one.lower for one in self.parameters]), np.array([one.upper for one in self.parameters])
+    def _bounds(self) -> list[tuple[float, float]]:
+        found = [(one.lower, one.upper) for one in self.parameters]
+        for number in self._pressing:
+            found[number] = max(found[number][0], 0.0), found[number][1]
+        return found
 
     def bytes_at(self, x: Array) -> bytes:
         """The bytes of the System at a point."""
@@ -264,6 +279,10 @@ def _is_free(system: System, own: SystemParameter, free: Tunable) -> bool:
     # far beyond what is forgiven of speeds that contradict one another
     far = 1.0 + max(abs(node.speed or 0.0) for node in system.nodes)
     return own.is_word_at(own.value + far) and own.is_word_at(own.value - far)
+
+
+def _sign(number: float) -> int:
+    return (number > 0.0) - (number < 0.0)
 
 
 def _fits(x: Array, thing: Component | Law, paths: Sequence[tuple[tuple[str, ...], int]]) -> bool:

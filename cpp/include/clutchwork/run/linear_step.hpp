@@ -62,7 +62,9 @@ struct ManyDirections {
   void put(int i, const Number& x) { at[i] = x; }
   const Number& get(int i) const { return at[i]; }
 
+  // there are many of them in a step
   friend CLUTCHWORK_HOT void add_times(double a, const ManyDirections& x, ManyDirections& y) {
+#pragma GCC unroll 1
     for (int i = 0; i < N; ++i) add_times(a, x.at[i], y.at[i]);
   }
 };
@@ -78,7 +80,7 @@ struct FewColumns {
   CLUTCHWORK_HOT void add(int n, const OneDirection<N, R>& x, OneDirection<N, R>& y) const {
     for (int j = 0; j < n; ++j) add_times(x.get(j), column[j], y.at);
   }
-  CLUTCHWORK_HOT void add(int n, const ManyDirections<N, R>& x, ManyDirections<N, R>& y) const {
+  [[gnu::noinline]] void add(int n, const ManyDirections<N, R>& x, ManyDirections<N, R>& y) const {
     for (int i = 0; i < n; ++i) {
       for (int j = 0; j < n; ++j) add_times(entry(i, j), x.at[j], y.at[i]);
     }
@@ -91,18 +93,6 @@ struct FewColumns {
     }
   }
 };
-
-/// The matrix of n by n numbers by which f adds to y what it makes of x.
-template <int N, int R, class F>
-void take_columns(int n, FewColumns<N, R>& to, F&& f) {
-  using Row = Slopes<8, R>;
-  Row x[8], y[8];
-  for (int i = 0; i < n; ++i) reinterpret_cast<double*>(x + i)[i] = 1;
-  f(x, y);
-  for (int i = 0; i < n; ++i) {
-    for (int j = 0; j < n; ++j) to.entry(i, j) = reinterpret_cast<const double*>(y + i)[j];
-  }
-}
 
 /// What a tape keeps of a step: run/linear_record.hpp. Numbers that carry their derivatives have none.
 template <class T>

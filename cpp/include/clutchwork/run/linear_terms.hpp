@@ -43,4 +43,27 @@ template <class Form, class X>
   }
 }
 
+/// J itself, of few numbers in the sparse form, none of them shared.
+template <class Form, class Matrix>
+[[gnu::noinline]] void take_jacobian(const Form& form, Matrix& to) {
+  const Jacobian<double>& j = form.ws.jacobian;
+  const Compressed<double>& rate = form.ws.rows.rate;
+  to = {};
+  for (int k = 0; k < form.ws.n_branches; ++k) {
+    const Branch<double>& b = form.ws.branch[k];
+    const int own = form.nz() + b.state;
+    for (int e = rate.first[k]; e < rate.first[k + 1]; ++e) {
+      const int at = rate.col[e];
+      const double torque = j.partial[k].by_rate * rate.val[e];
+      for (int f = rate.first[k]; f < rate.first[k + 1]; ++f) to.entry(rate.col[f], at) += rate.val[f] * torque;
+      for (int s = 0; s < b.states; ++s) {
+        to.entry(at, own + s) += rate.val[e] * j.f_state[b.state + s];
+        to.entry(own + s, at) += j.g_rate[b.state + s] * rate.val[e];
+      }
+    }
+    for (int s = 0; s < b.states * b.states; ++s)
+      to.entry(own + s / b.states, own + s % b.states) = j.g_state[j.block[k] + s];
+  }
+}
+
 }  // namespace clutchwork

@@ -143,7 +143,6 @@ class Phase : public StepSize<typename Form::Scalar> {
     }
     if constexpr (has_tangents<T>) {
       if (event && leave_event(form_, step_)) balance_massless(form_, step_);
-      if (event || ws_.statistics.steps == 0) note_borders(form_, step_, borders_here());
     }
     ws_.fresh_phase = ws_.stiffened = false;
     // at a knot the row is the right limit, which comes after it
@@ -151,6 +150,9 @@ class Phase : public StepSize<typename Form::Scalar> {
     if (shown != Status::running) return leave(shown);
     // counted as one, so that a run counts alike wherever it is left
     linearized ? void(++ws_.statistics.jacobians) : linearize_start();
+    if constexpr (has_tangents<T>) {
+      if (event || ws_.statistics.steps == 0) note_borders(form_, step_, borders_here());
+    }
     h_ = first_length(event);
   }
 

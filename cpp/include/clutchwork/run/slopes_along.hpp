@@ -29,6 +29,7 @@ class SlopesAlong {
   Plain& plain_;
   Step<Plain>& taken_;
   bool rows_move_ = true, mass_moves_ = true;  ///< with the numbers of the model
+  bool moved_ = true;                          ///< they have a part in the phase
 
  public:
   SlopesAlong(Form& form, Step<Form>& step, Plain& plain, Step<Plain>& taken)
@@ -38,20 +39,33 @@ class SlopesAlong {
   void reflect() {
     rows_move_ = moves(ws_.rows.rate.val, ws_.rows.rate.first[ws_.n_branches]);
     mass_moves_ = moves(ws_.rows.mass.val, ws_.rows.mass.first[plain_.nz()]);
+    moved_ = Form::full || rows_move_ || mass_moves_ || ws_.sys.shared > 0;
+    for (int k = 0; k < ws_.n_branches; ++k) moved_ = moved_ || ws_.moved.moves[ws_.branch[k].direction] != 0;
   }
+  /// Whether derivatives that are zero stay so: no number with derivatives has a part in the phase.
+  bool stay_zero() const { return !moved_ && !moves(step_.y0(), plain_.n()); }
 
   /// At a share of the step, where the derivatives of the state are `y`, into `d`. `still`: these are zero.
   template <class X>
-  [[gnu::noinline]] void at(double share, const X* y, X* d, bool still) {
+  void at(double share, const X* y, X* d, bool still) {
+    interpolate(plain_, taken_, share, taken_.point());
+    here(share, y, d, still);
+  }
+  /// The same where taken.point() is there.
+  template <class X>
+  [[gnu::noinline]] void here(double share, const X* y, X* d, bool still = true) {
+    if (still && !moved_) {
+      for (int i = 0; i < plain_.n(); ++i) d[i] = X(0);
+      return;
+    }
     const double t = taken_.t + share * taken_.h;
     const bool all = Form::full || rows_move_ || ws_.sys.shared > 0;
     T *whole = step_.point(), *made = step_.p(2);
-    interpolate(plain_, taken_, share, taken_.point());
     for (int i = all ? 0 : plain_.nz(); i < plain_.n(); ++i) whole[i] = As<X>::number(taken_.point()[i], y[i]);
     if (all) {
       evaluate(form_, t, whole, made);
       for (int i = 0; i < plain_.n(); ++i) d[i] = As<X>::of(made[i]), taken_.slope()[i] = value(made[i]);
-    } else {
+    } else if constexpr (!Form::full) {
       evaluate_over_plain_rows(t, whole, y, d, still);
     }
     if (mass_moves_) take_from_mass(d);

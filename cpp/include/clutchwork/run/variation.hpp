@@ -118,7 +118,7 @@ class Variation {
   /// `end`, to `until` or less far; how far it got, -1: its length has become too short.
   double follow(double from, double until, double end) {
     fit(form, step);
-    if (step.t + until * step.h <= ws_.moved.begin) return leap(from, until);
+    if (step.t + until * step.h <= ws_.moved.begin || slopes_.stay_zero()) return leap(from, until);
     auto as = [&](auto tag) { return follow_as<typename decltype(tag)::type>(from, until, end); };
     return T::over(ws_.moved.directions, as);
   }
@@ -204,18 +204,23 @@ class Variation {
   void take_mass(LinearStep<N, lanes>& linear) {
     if (mass_known_) return;
     linear.n = form.n(), mass_known_ = true;
-    take_columns(linear.n, linear.mass, [&](const auto* x, auto* y) {
-      form.add_mass_times(1.0, x, y);
-      for (int i = form.nz(); i < form.n(); ++i) y[i] += x[i];
-    });
+    linear.mass = {};
+    const Compressed<double>& mass = form.ws.rows.mass;
+    for (int i = 0; i < form.nz(); ++i) {
+      for (int e = mass.first[i]; e < mass.first[i + 1]; ++e)
+        linear.mass.entry(i, mass.col[e]) = linear.mass.entry(mass.col[e], i) = mass.val[e];
+    }
+    for (int i = form.nz(); i < form.n(); ++i) linear.mass.entry(i, i) = 1;
   }
   /// Where the image has the factor and the Jacobian of the start.
   template <int N>
   void take_inverse(LinearStep<N, lanes>& linear) {
-    take_columns(linear.n, linear.inverse, [&](const auto* x, auto* y) {
-      for (int i = 0; i < form.n(); ++i) y[i] = x[i];
-      Rodas5P::solve(form, y, y);
-    });
+    Slopes<N, lanes> x[N];
+    for (int i = 0; i < linear.n; ++i) reinterpret_cast<double*>(x + i)[i] = 1;
+    Rodas5P::solve(form, x, x);
+    for (int i = 0; i < linear.n; ++i) {
+      for (int j = 0; j < linear.n; ++j) linear.inverse.entry(i, j) = reinterpret_cast<const double*>(x + i)[j];
+    }
   }
 
   static Workspace<double>& prepared(Workspace<T>& ws) {
@@ -226,7 +231,7 @@ class Variation {
   /// Speeds are brought back onto ties after a part.
   bool has_ties() const { return Form::full && ws_.ratios.n > 0; }
 
-  /// The derivatives stay: it is too short for a step, or none has begun.
+  /// The derivatives stay: it is too short for a step, or nothing has begun to move.
   double leap(double from, double until) {
     for (int i = 0; i < form.n(); ++i) step_.y1()[i] = step_.y0()[i];
     for (int q = 0; q < 3; ++q) {
@@ -258,7 +263,7 @@ class Variation {
       if (!(h > 1e-14 * larger(1e-2, abs(step.t)))) return last ? leap(from, until) : -1;
       if (!prepare(from, h)) return -1;
       from_ = from, to_ = to, share_ = h / step.h;
-      const double error = is_few() ? vary_few<X>(h, end) : vary<X>(h, end);
+      const double error = vary_by_size<X>(h, end);
       const bool kink = error > 1 && error < 1e300 && h <= shortest();
       const double growth = kink ? 6 : 0.9 * fifth_root_of_inverse(larger(error, 1e-10));
       if (error <= 1 || kink) {
@@ -266,7 +271,7 @@ class Variation {
         ws_.moved.pace = last ? larger(pace, h * smaller(6.0, growth)) : h * smaller(6.0, growth);
         // a part that counts for nothing may end anywhere
         for (int j = 0; j < As<X>::count; ++j) ws_.moved.size[j] = reached_[j];
-        if (is_few()) keep_few<X>();
+        keep_few<X>();
         for (int i = 0; i < form.n(); ++i) row<X>(SlopeRow::first)[i] = row<X>(SlopeRow::last)[i];
         known_ = !has_ties();
         set_values();
@@ -411,7 +416,12 @@ class Variation {
   // -------------------------------------------------------------------------------------------------- of few numbers
 
   /// Whether a part is taken with matrices of all numbers.
-  bool is_few() const { return !Form::full && form.n() <= few && ws_.sys.shared == 0; }
+  bool is_few() const {
+    if constexpr (Form::full)
+      return false;
+    else
+      return form.n() <= few && ws_.sys.shared == 0;
+  }
 
   /// Where the slopes by the numbers of the model alone are kept, at the instants of a part at which they are known.
   template <class X>
@@ -424,12 +434,14 @@ class Variation {
              row<X>(SlopeRow::last)}};
   }
 
-  /// As vary, with the equations as a quartic between five instants. docs/theory/gradients.md (23)
   template <class X>
-  double vary_few(double h, double end) {
-    if constexpr (Form::full) return infinity;
-    return form.n() <= very_few ? vary_with<X>(smallest_, h, end) : vary_with<X>(small_, h, end);
+  double vary_by_size(double h, double end) {
+    if constexpr (!Form::full) {
+      if (is_few()) return form.n() <= very_few ? vary_with<X>(smallest_, h, end) : vary_with<X>(small_, h, end);
+    }
+    return vary<X>(h, end);
   }
+  /// As vary, with the equations as a quartic between five instants. docs/theory/gradients.md (23)
   template <class X, int N>
   [[gnu::noinline]] double vary_with(LinearStep<N, lanes>& linear, double h, double end) {
     using Seen = typename As<X>::Seen;
@@ -437,15 +449,16 @@ class Variation {
     const int n = form.n();
     const Loads<X> loads = load_rows<X>();
     step_.t = step.t + from_ * step.h, step_.h = h, step_.dense = false;
-    linearize_part(linear, h, end);
     X* still = row<X>(SlopeRow::start);
     for (int i = 0; i < n; ++i) still[i] = X(0);
+    linearize_part(linear, h, end, [&](int m) { slopes_.here(from_ + Lobatto::node[m] * share_, still, loads.at[m]); });
+    if (!known_) slopes_.at(from_, still, loads.at[0], true);
+    slopes_.at(to_, still, loads.at[Lobatto::count - 1], true);
+    known_ = true;
     S start{}, load[Lobatto::count]{}, k[8], last;
     for (int m = 0; m < Lobatto::count; ++m) {
-      if (m > 0 || !known_) slopes_.at(from_ + Lobatto::node[m] * share_, still, loads.at[m], true);
       for (int i = 0; i < n; ++i) load[m].put(i, As<X>::seen(loads.at[m][i]));
     }
-    known_ = true;
     for (int i = 0; i < n; ++i) start.put(i, As<X>::seen_of(step_.y0()[i]));
     linear.take(start, load, k, last);
     if constexpr (std::is_same_v<X, Seen>) {
@@ -459,37 +472,45 @@ class Variation {
     return error_of<X>([&](int i) { return k[7].get(i); }, [&](int i) { return last.get(i); });
   }
 
-  /// The matrices of a part of length h; the image has the factor of its start, and is linearized at its end.
-  template <int N>
-  void linearize_part(LinearStep<N, lanes>& linear, double h, double end) {
+  /// The matrices of a part of length h; the image has the factor of its start, and is linearized at its end. f(m) at
+  /// the instants inside of it, whose point is there.
+  template <int N, class F>
+  void linearize_part(LinearStep<N, lanes>& linear, double h, double end, F&& f) {
     linear.h = h;
-    auto by_state = [&](const auto* x, auto* y) { add_linear(form, x, y); };
     swap_jacobians();
-    if (!known_) take_columns(linear.n, linear.known[0], by_state);
+    if (!known_) take_jacobian(form, linear.known[0]);
     // that of the whole step is known
     if (!is_whole_) take_inverse(linear);
     for (int m = 1; m < Lobatto::count - 1; ++m) {
       linearize_inside(from_ + Lobatto::node[m] * share_);
-      take_columns(linear.n, linear.known[m], by_state);
+      take_jacobian(form, linear.known[m]);
+      f(m);
     }
     swap_jacobians();
     linearize_at(to_, end);
-    take_columns(linear.n, linear.known[Lobatto::count - 1], by_state);
+    take_jacobian(form, linear.known[Lobatto::count - 1]);
     linear.prepare();
   }
-  /// Its derivatives alone, at a share of the step; what the guards know of its end stays.
+  /// Its derivatives by the state alone, at a share of the step; what the guards know of its end stays.
   void linearize_inside(double share) {
-    StepEnd<double> inside = form.ws.step_end;
-    inside.rate = ws_.moved.rates;
-    interpolate(form, step, share, step.point());
-    linearize(form, step.t + share * step.h, step.point(), step.u(), step.slope(), inside);
+    Workspace<double>& ws = form.ws;
+    double *y = step.point(), *state = y + form.nz();
+    interpolate(form, step, share, y);
+    inputs_with(ws, step.t + share * step.h, state);
+    for (int k = 0; k < ws.n_branches; ++k) {
+      const double rate = form.rate(k, y) + offset_rate(ws, k);
+      ws.jacobian.partial[k] =
+          branch_partial(ws, ws.branch[k], rate, 0.0, state, step.slope() + form.nz(), state_partials(ws, k));
+    }
     at_ = share;
   }
 
   /// What is known of the end of a part that counts serves the next one; a tape gets a note of the part.
   template <class X>
   void keep_few() {
-    form.n() <= very_few ? keep_matrices<X>(smallest_) : keep_matrices<X>(small_);
+    if constexpr (!Form::full) {
+      if (is_few()) form.n() <= very_few ? keep_matrices<X>(smallest_) : keep_matrices<X>(small_);
+    }
   }
   template <class X, int N>
   void keep_matrices(LinearStep<N, lanes>& linear) {
@@ -544,22 +565,22 @@ class Variation {
     for (int i = nz; i < n; ++i) add_times(1 / h, mix[i], k[i]);
   }
 
-  /// Sizes of the components x(i) of each direction over those of the motion, to f(component, size of the motion).
-  template <class X, class At, class F>
-  void each_component(At&& x, F&& f) const {
+  /// Components of two sets x(i) and y(i) of each direction, and their size in the motion, to f.
+  template <class X, class At, class Other, class F>
+  void each_component(At&& x, Other&& y, F&& f) const {
     const Workspace<double>& plain = form.ws;
     const int nv = int(plain.sys.speeds), nz = form.nz();
     const double least = plain.options.atol / plain.options.rtol;
     double fastest = 0;
     for (int i = 0; i < nv; ++i) fastest = larger(fastest, plain.reduced.size[i]);
     for (int i = 0; i < nv; ++i) {
-      auto moved = typename As<X>::Seen(0);
-      each_share(form, i, [&](double z, int j) { moved += x(j) * z; });
-      f(moved, least + larger(plain.reduced.size[i], 1e-3 * fastest));
+      auto moved = typename As<X>::Seen(0), other = moved;
+      each_share(form, i, [&](double z, int j) { moved += x(j) * z, other += y(j) * z; });
+      f(moved, other, least + larger(plain.reduced.size[i], 1e-3 * fastest));
     }
     for (int i = 0; i < form.ns(); ++i) {
       const double most = larger(abs(step0(nz + i)), abs(step1(nz + i)));
-      f(x(nz + i), plain.reduced.floor[i] / plain.options.rtol + most);
+      f(x(nz + i), y(nz + i), plain.reduced.floor[i] / plain.options.rtol + most);
     }
   }
   double step0(int i) const { return const_cast<Step<Plain>&>(step).y0()[i]; }
@@ -573,11 +594,9 @@ class Variation {
     double sum[seen] = {}, worst = 0;
     double* size = reached_;
     for (int j = 0; j < seen; ++j) size[j] = ws_.moved.size[j];
-    each_component<X>(end, [&](const auto& x, double of) {
+    each_component<X>(end, missed, [&](const auto& x, const auto& lost, double of) {
       for (int j = 0; j < seen; ++j) size[j] = larger(size[j], abs(As<X>::at(x, j)) / of);
-    });
-    each_component<X>(missed, [&](const auto& x, double of) {
-      for (int j = 0; j < seen; ++j) sum[j] += (As<X>::at(x, j) / of) * (As<X>::at(x, j) / of);
+      for (int j = 0; j < seen; ++j) sum[j] += (As<X>::at(lost, j) / of) * (As<X>::at(lost, j) / of);
     });
     const double count = double(ws_.sys.speeds + form.ns());
     for (int j = 0; j < seen; ++j) {

@@ -57,13 +57,12 @@ struct Moved {
   typename T::Widest* slopes = nullptr;  ///< derivatives alone along a step: rows of the length of the motion
   Jacobian<double> other;                ///< of the image, at the other end of a step of the derivatives
   double* other_whole = nullptr;         ///< the same of the full form
-  double* rates = nullptr;               ///< of the branches of the image inside of a step
   int* moves = nullptr;                  ///< of each direction: whether its torque has numbers with derivatives
 
   template <class P, class A>
   static void lay_out(P& p, A& a, const Sizes& s) {
     a.scratch(p.row, s.row), a.scratch(p.slopes, SlopeRow::count * (s.speeds + s.states));
-    a.scratch(p.rates, s.directions), a.scratch(p.moves, s.directions);
+    a.scratch(p.moves, s.directions);
     const auto unknowns = s.full ? s.speeds + s.states : 0;
     Jacobian<double>::lay_out(p.other, a, s), a.scratch(p.other_whole, unknowns * unknowns);
     a.scratch(p.event, EventBuffer::room + 3 * s.contacts), a.scratch(p.graze, room);
