@@ -196,11 +196,11 @@ def both_ways(tally: Tally, function: Any, given: Array, scales: Array, chosen: 
         # what changes by far more than its own size is judged by its change
         told = np.maximum(scale / sizes, np.abs(a.left))
         missed = np.where(np.isnan(given[place]), 0.0, np.abs(a.left - b.left) / told)
-        apart = BOTH_WAYS * (ALLOWED_JERK / ALLOWED if a.name.startswith("squared_jerk") else 1.0)
-        if np.nanmax(missed, initial=0.0) > apart:
+        allowed = BOTH_WAYS * (ALLOWED_JERK / ALLOWED if a.name.startswith("squared_jerk") else 1.0)
+        if np.nanmax(missed, initial=0.0) > allowed:
             tally.apart.append(f"{a.name}: forward {a.left}, back {b.left}, {np.nanmax(missed):.1e} of scale")
         for what, value in (("f(x)", values[place]), ("sweep", swept.get(place, values[place]))):
-            if not abs(a.value - value) <= 1e-7 * scale + 1e-12 and not (np.isnan(a.value) and np.isnan(value)):
+            if not abs(a.value - value) <= allowed * scale + 1e-12 and not (np.isnan(a.value) and np.isnan(value)):
                 tally.apart.append(f"{a.name}: gradient {a.value!r}, {what} {value!r}")
 
 

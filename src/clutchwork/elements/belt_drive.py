@@ -143,7 +143,6 @@ class BeltDrive(Sticking):
             backward=backward,
             mass_per_length=self.mass_per_length,
             tension=tension,
-            # at a belt without mass its speed does not matter
-            speed=larger if self.mass_per_length and not larger.fixed else 0.0,
+            speed=0.0 if larger.fixed else larger,
             **self.sticking(),
         )
