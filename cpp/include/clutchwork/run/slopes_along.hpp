@@ -39,7 +39,7 @@ class SlopesAlong {
   void reflect() {
     rows_move_ = moves(ws_.rows.rate.val, ws_.rows.rate.first[ws_.n_branches]);
     mass_moves_ = moves(ws_.rows.mass.val, ws_.rows.mass.first[plain_.nz()]);
-    moved_ = Form::full || rows_move_ || mass_moves_ || ws_.sys.shared > 0;
+    moved_ = rows_move_ || mass_moves_ || Form::full || ws_.sys.shared > 0;
     for (int k = 0; k < ws_.n_branches; ++k) moved_ = moved_ || ws_.moved.moves[ws_.branch[k].direction] != 0;
   }
   /// Whether derivatives that are zero stay so: no number with derivatives has a part in the phase.
