@@ -197,6 +197,15 @@ MENDED: dict[str, list[int]] = {
     "a load that turned with the torque of a motor, right at its rest": [19000770],
     "a load of what slides, by the shares of what is held": [19014783],
     "a gear whose efficiency comes down to zero": [19000395],
+    "a row at the pole of a ratio, or behind it": [21105025, 21106047, 22002935],
+    "a set that gave way by round-off of torques that had died away": [21105933],
+    "a set at its limit, by members that follow no load": [21102375],
+    "a slip that left zero beside a prescribed speed that bends": [21200505],
+    "a load of a state that had just left zero": [22000499],
+    "ties of a step that led to rest": [22003549],
+    "a ratio that would lose a light shaft far ahead": [21109558],
+    "a freewheel between the shafts of a joint whose ratio passes one": [19030625],
+    "a sign of a slip that follows itself beside a limited slip": [21200560],
 }
 
 

@@ -88,7 +88,8 @@ def ending(made: Plain, base: Any) -> list[Fault]:
         return []
     kinds = [one["type"] for one in made["element"]]
     laws = [one["friction"]["type"] for one in made["element"] if isinstance(one.get("friction"), dict)]
-    if "naive_sign" in laws and base.status in ("chatter", "too_many_steps", "too_many_events", "zeno"):
+    # a sign of a slip at its word is no torque at rest, beside friction that follows it none that balances
+    if "naive_sign" in laws and base.status in ("chatter", "too_many_steps", "too_many_events", "zeno", "unbalanced"):
         return []
     # an explicit method that was asked for spends its budget where the motion is stiff: the others must not
     if base.status == "too_many_steps" and base.options.method == "dopri5":
@@ -106,7 +107,7 @@ def ending(made: Plain, base: Any) -> list[Fault]:
     # a freewheel, or a gear that locks itself, behind a ratio that passes zero: whatever it held, what turns on the
     # other side would turn it backward
     turned = base.status == "unbalanced" or (base.status == "jammed" and JAMS["turned"][0] in base.message)
-    if turned and passes_zero(base):
+    if turned and (passes_zero(base) or (base.status == "jammed" and leaves_no_slip(base))):
         return []
     if base.status in ("jammed", "unbalanced", "too_many_steps") and at_dead_point(base):
         return []
@@ -159,6 +160,27 @@ def passes_zero(base: Any) -> bool:
             near = [value for t in (end - SOON, end, end + SOON) for value in sides(ratio, t)]
             if min(near) <= 0.0 <= max(near):
                 return True
+    return False
+
+
+def leaves_no_slip(base: Any) -> bool:
+    """Whether a freewheel that jams slips with the ratios of transmissions alone, and no longer: as between the shafts
+    of a joint whose ratio passes one. Behind it the same motion would turn it backward, and no torque at it has a lever
+    that stops that."""
+    if not len(base.rows):
+        return False
+    speed, nodes = base.rows[-1, base.wiring.columns["speed"]], len(base.wiring.nodes)
+    ways, contacts = base.wiring.spread(base.wiring.elements), base.wiring.spread(base.wiring.contacts)
+    ties = [np.zeros(nodes)]
+    for number, branch in enumerate(base.wiring.elements[:-1]):
+        if branch.component is base.wiring.elements[number + 1].component and "ratio" in branch.component.hooks:
+            one, other = ways[:, number], ways[:, number + 1]
+            ties.append(one * (speed @ other) - other * (speed @ one))
+    for number, branch in enumerate(base.wiring.contacts):
+        if branch.component.one_way and repr(branch.component.name) in base.message:
+            own, rows = contacts[:, number], np.array(ties).T
+            left = own - rows @ np.linalg.lstsq(rows, own, rcond=1e-9)[0]
+            return bool(np.linalg.norm(left) <= VANISHED * np.linalg.norm(own))
     return False
 
 

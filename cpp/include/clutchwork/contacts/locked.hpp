@@ -431,7 +431,10 @@ template <class T>
 T solve_at_limit(LoadedLimit<T>& limit) {
   T factor = solve_loaded(limit);
   for (double share = 1e-11; share < 2e-8 && value(limit.size) > 0 && !(value(factor) >= 1); share *= 10) {
-    limit.noise = T(share) * limit.size;
+    const T noise = T(share) * limit.size;
+    for (int i = 0; i < limit.set.n; ++i)
+      limit.set.lower[i] -= noise - limit.noise, limit.set.upper[i] += noise - limit.noise;
+    limit.noise = noise;
     factor = solve_loaded(limit);
   }
   return factor;

@@ -386,9 +386,10 @@ int hardest_contact(const Workspace<T>& ws) {
 
 /// Speeds y brought onto the ties at the point that was evaluated last, the momentum across them untouched. A
 /// transmission that nothing can keep there, for what ties its speeds is prescribed, or that would have to stop by a
-/// jump what has left its ratio; -1: none. docs/theory/varying-ratios.md (9)
+/// jump what has left its ratio; -1: none. `before`: at the start of a step, which may lead to rest.
+/// docs/theory/varying-ratios.md (9)
 template <class Form, class T = typename Form::Scalar>
-int settle_ties(Form& form, T* y) {
+int settle_ties(Form& form, T* y, const T* before = nullptr) {
   Workspace<T>& ws = form.ws;
   const Ratios<T>& r = ws.ratios;
   const Tied<T>& w = r.plain;
@@ -412,6 +413,7 @@ int settle_ties(Form& form, T* y) {
   double fastest = 0, moved = 0;
   for (int i = 0; i < nz; ++i) {
     fastest = larger(fastest, abs(value(missed[i])));
+    if (before != nullptr) fastest = larger(fastest, abs(value(before[i])));
     moved = larger(moved, abs(value(y[i] - missed[i])));
   }
   for (int a = 0; a < r.n; ++a) {
@@ -481,6 +483,17 @@ double tie_product(const Ratios<T>& r, const Tied<A>& one, const Tied<B>& other,
   return product;
 }
 
+/// Size of the terms of the product of tie t with itself.
+template <class T>
+double tie_terms(const Ratios<T>& r, const Tied<T>& one, int t) {
+  const T* share = one.share + t * r.rows;
+  double sum = 0;
+  for (int k = 0; k < r.rows; ++k) {
+    for (int l = 0; l < r.rows; ++l) sum += abs(value(r.between[k * r.rows + l] * share[k] * share[l]));
+  }
+  return sum;
+}
+
 /// A tie that has turned over, and nothing else, since the point that was linearized last: it has passed a ratio at
 /// which nothing is left of it; -1: none. docs/theory/varying-ratios.md (22)
 template <class T>
@@ -492,6 +505,28 @@ int turned_tie(const Ratios<T>& r) {
     if (sizes - mixed * mixed <= 1e-12 * sizes) return t;
   }
   return -1;
+}
+
+/// The same where it may also be at that ratio, or within the round-off of its terms behind it.
+template <class T>
+int lost_tie(const Ratios<T>& r) {
+  for (int t = 0; t < r.ties; ++t) {
+    const int own = t * r.ties + t;
+    const double mixed = tie_product(r, r.some, r.plain, t);
+    if (value(r.some.gram[own]) == 0 || (mixed > 0 && value(r.plain.gram[own]) != 0)) continue;
+    const double before = tie_product(r, r.some, r.some, t), sizes = before * tie_product(r, r.plain, r.plain, t);
+    if (sizes - mixed * mixed <= 1e-12 * sizes + 1e-14 * before * tie_terms(r, r.plain, t)) return t;
+  }
+  return -1;
+}
+
+/// Whether the point that was evaluated last is before the ratio at which the step loses a tie.
+template <class T>
+bool keeps_ties(const Ratios<T>& r) {
+  const int t = r.lost, own = t * r.ties + t;
+  if (t < 0) return true;
+  if (value(r.plain.gram[own]) == 0) return false;
+  return value(r.some.gram[own]) == 0 || tie_product(r, r.some, r.plain, t) < 0;
 }
 
 /// A transmission that has passed, since the point that was linearized last, a ratio at which the speed without inertia

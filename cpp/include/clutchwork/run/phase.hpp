@@ -50,10 +50,13 @@ class Phase : public StepSize<typename Form::Scalar> {
   // steps at the limit of stability, of the length over the fastest rate, before an implicit method goes on
   static constexpr int most_strained = 8;
   static constexpr double strain = 1.5;
+  // of the time: a step in which a run that loses a speed ends
+  static constexpr double shortest = 1e-9;
 
   Form form_;
   Step<Form> step_;
   const StepCalls<Form> calls_;
+  bool passes_ = false;  ///< the step has passed a ratio at which a speed without inertia follows from nothing
   [[no_unique_address]] std::conditional_t<has_tangents<T>, Variation<Form>, NoVariation> varied_;
 
  public:
@@ -328,9 +331,13 @@ class Phase : public StepSize<typename Form::Scalar> {
     if constexpr (Form::full) {
       keep_ties(taken_form(), taken_step(), end_of_step(), taken_step().y1());
       auto& ws = taken_form().ws;
-      ws.ratios.reversed = ws.ratios.n > 0 && ws.held.n > 0 ? turned_tie(ws.ratios) : -1;
+      const bool held = ws.ratios.n > 0 && ws.held.n > 0;
+      ws.ratios.reversed = held ? turned_tie(ws.ratios) : -1;
+      ws.ratios.lost = held ? lost_tie(ws.ratios) : -1;
       if (ws.ratios.n > 0 && ws.ratios.jammed < 0) ws.ratios.jammed = turned_over(ws);
-      if (ws.ratios.n > 0 && ws.ratios.jammed < 0) ws.ratios.jammed = passed_over(ws.ratios);
+      const bool kept = ws.ratios.n > 0 && ws.ratios.jammed < 0;
+      if (kept) ws.ratios.jammed = passed_over(ws.ratios);
+      passes_ = kept && ws.ratios.jammed >= 0;
     }
     linearize_end();
     return true;
@@ -368,8 +375,9 @@ class Phase : public StepSize<typename Form::Scalar> {
     } else if (misses_rest(hit)) {
       reject_and_shrink();
     } else if (Form::full && taken_form().ws.ratios.jammed >= 0) {
-      // whatever comes first ends a step of its own: this one has lost a speed
-      hit.none() ? jam(taken_form().ws.ratios.jammed) : (error_ = much_missed, reject_and_shrink());
+      // whatever comes first ends a step of its own: this one has lost a speed, perhaps far from its start
+      const bool early = passes_ && reach_ > shortest * larger(1e-2, ws_.time);
+      hit.none() && !early ? jam(taken_form().ws.ratios.jammed) : (error_ = much_missed, reject_and_shrink());
     } else if (is_written || reach(hit.s)) {
       hit.none() ? accept() : meet(hit);
       return is_written;
@@ -408,7 +416,12 @@ class Phase : public StepSize<typename Form::Scalar> {
   /// point. docs/theory/events.md, rule 7
   CLUTCHWORK_INLINE bool must_land(const Hit& hit) {
     if (hit.none() || landings_ >= most_landings || hit.s <= 0 || hit.s >= 1) return false;
-    return !(error_until(taken_form(), taken_step(), hit.s) <= most_cut_error);
+    const bool sure = error_until(taken_form(), taken_step(), hit.s) <= most_cut_error;
+    if constexpr (Form::full) {
+      // a pole is where it is, and at it nothing tells what the contact has held
+      if (taken_form().ws.ratios.n > 0 && !keeps_ties(taken_form().ws.ratios)) return false;
+    }
+    return !sure;
   }
 
   /// Repeat the step so that it ends there.

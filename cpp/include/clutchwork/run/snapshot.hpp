@@ -46,18 +46,42 @@ void see_massless(Form& form, Step<Form>& step, double s, const Snapshot<T>& sho
   }
 }
 
+/// State and inputs at s, with the torques of all branches there.
+template <class Form, class T = typename Form::Scalar>
+void look_at(Form& form, Step<Form>& step, double s, const Snapshot<T>& shot) {
+  const double t = step.t + s * step.h;
+  interpolate(form, step, s, shot.y);
+  inputs_at(form.ws, t);
+  input_slopes_at(form.ws, t);
+  observe(form, t, shot.y, shot.d);
+}
+
+/// Of a point s, which was looked at, at the pole of a tie in the step, or right behind it, that which is before it:
+/// the others hold no longer what they still do there. docs/theory/varying-ratios.md (22)
+template <class Form, class T = typename Form::Scalar>
+double before_lost_tie(Form& form, Step<Form>& step, double s, const Snapshot<T>& shot) {
+  constexpr double near = 1e-3;
+  const auto& r = form.ws.ratios;
+  if (r.n == 0 || r.lost < 0 || step.h == 0 || keeps_ties(r)) return s;
+  const double most = value(r.plain.gram[r.lost * r.ties + r.lost]) == 0 ? s : smaller(s, near);
+  for (double back = 1e-6; back < most; back *= 4) {
+    look_at(form, step, s - back, shot);
+    if (keeps_ties(r)) return s - back;
+  }
+  look_at(form, step, s, shot);
+  return s;
+}
+
 /// State, torques of all directions and accelerations at s; output torques go to ws.out.torque.
 template <class Form, class T = typename Form::Scalar>
 Snapshot<T> take_snapshot(Form& form, Step<Form>& step, double s) {
   Workspace<T>& ws = form.ws;
   const auto& sys = ws.sys;
   const int nv = int(sys.speeds), ne = int(sys.elements), nc = int(sys.contacts);
-  const double t = step.t + s * step.h;
   Snapshot<T> shot{step.point(), step.slope(), ws.observed.rate, ws.out.v, ws.out.dv};
-  interpolate(form, step, s, shot.y);
-  inputs_at(ws, t);
-  input_slopes_at(ws, t);
-  observe(form, t, shot.y, shot.d);
+  look_at(form, step, s, shot);
+  if constexpr (Form::full) s = before_lost_tie(form, step, s, shot);
+  const double t = step.t + s * step.h;
   if constexpr (Form::full) {
     // an interpolant keeps the ties of transmissions less exactly than the ends of a step do
     if (ws.ratios.n > 0 && s > 0 && s < 1 && step.h > 0) settle_ties(form, shot.y), observe(form, t, shot.y, shot.d);

@@ -19,7 +19,7 @@ void keep_ties(FullForm<T>& form, Step<FullForm<T>>& step, Real<T> t, T* y) {
   Workspace<T>& ws = form.ws;
   if (ws.ratios.n == 0) return;
   evaluate(form, t, y, step.slope());
-  ws.ratios.jammed = settle_ties(form, y);
+  ws.ratios.jammed = settle_ties(form, y, step.y0());
   stay_at_ends(ws, y + form.nz());
 }
 

@@ -56,6 +56,7 @@ struct Ratios {
   int jammed = -1;      ///< transmission that nothing can keep at its ratio, -1: none
   int stopped = -1;     ///< locked contact whose direction varies and that has just stopped what moved, -1: none
   int reversed = -1;    ///< tie that has turned over in the step, -1: none
+  int lost = -1;        ///< the same, or one of which nothing is left at its end
 
   // of a phase
   int more_rows = 0;  ///< of the form, behind those of the rates: locked contacts whose directions vary

@@ -27,8 +27,6 @@ double line_crossing(Form& form, Step<Form>& step, const LineGuard& guard, doubl
     inputs_at(ws, step.t + s * step.h);
     return guard.sign * (value(form.rate(k, step.point()) + offset_rate(ws, k)) - guard.level);
   };
-  if (rates_bend(ws)) return first_crossing(at, g0, g1, limit);
-  // Bernstein coefficients of the quartic
   const double q0 = guard.sign * value(form.rate(k, step.p(0))), q1 = guard.sign * value(form.rate(k, step.p(1))),
                q2 = guard.sign * value(form.rate(k, step.p(2)));
   const double a1 = g1 - g0 + q0, a2 = q1 - q0, a3 = q2 - q1;
@@ -37,6 +35,12 @@ double line_crossing(Form& form, Step<Form>& step, const LineGuard& guard, doubl
   const bool fresh = abs(g0) <= 1e3 * noise;
   const double leaving = guard.sign * step.h * value(ws.step_start.slope[k]);
   const double mend = fresh && leaving * a1 <= 0 ? leaving - a1 : 0.0;
+  if (rates_bend(ws)) {
+    const double still = fresh ? noise : 0.0;
+    auto mended = [&](double s) { return at(s) + still + mend * s * (1 - s) * (1 - s) * (1 - s); };
+    return first_crossing(mended, g0 + still, g1 + still, limit);
+  }
+  // Bernstein coefficients of the quartic
   double b[5] = {larger(g0, 0.0), g0 + (a1 + mend) / 4, g0 + a1 / 2 + a2 / 6, g0 + 0.75 * a1 + a2 / 2 + a3 / 4, g1};
   double scale = 0;
   for (double x : b) scale = larger(scale, abs(x));

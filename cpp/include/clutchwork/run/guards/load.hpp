@@ -36,9 +36,9 @@ struct LoadZero : OfContact {
       const double sign = ws.contact.pressed[c] ? 1.0 : -1.0;
       // where it has just passed zero it must leave it before it passes again
       inputs_in(form, step, 0.0);
-      const double least = load_noise * ws.guard.load_size[c];
+      const double still = load_at_rest(ws, c), least = larger(load_noise * ws.guard.load_size[c], still);
       const bool grazes = step.t - ws.guard.turned_at[c] <= 1e-3 && abs(value(load_of(ws, c))) <= least;
-      const double noise = grazes ? least : 0.0, still = load_at_rest(ws, c);
+      const double noise = grazes ? least : 0.0;
       auto f = [&](double s) {
         inputs_in(form, step, s);
         return sign * value(load_of(ws, c)) + noise;

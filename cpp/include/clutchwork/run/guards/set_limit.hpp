@@ -13,6 +13,12 @@
 /// Where locked contacts that depend on one another break away as a set. docs/theory/events.md
 namespace clutchwork {
 
+/// Round-off of the torques inside of a step: those at its start may be far larger, and those beside a pole.
+template <class T>
+T round_off(const Workspace<T>& ws) {
+  return smaller(ws.step_start.noise[0], T(1e-12 * torque_size(ws)));
+}
+
 /// Where the limit load of a set is reached that has contacts that follow loads: its limit load has kinks where a load
 /// changes its sign. Far from it at both ends, ahead of both and in the middle, it is taken to be far from it in
 /// between.
@@ -22,7 +28,7 @@ template <class Form>
   fit(form, step);
   auto f = [&](double s) {
     torques_at(form, step, s);
-    return value(set_room(ws, k, ws.observed.carried, ws.step_start.noise[0], ws.loads.now));
+    return value(set_room(ws, k, ws.observed.carried, round_off(ws), ws.loads.now));
   };
   const double before = value(ws.step_start.room[k]);
   hit.take(first_at_no_load(form, step, f, before, hit.s), k);
@@ -41,7 +47,7 @@ template <class Form>
   fit(form, step);
   auto f = [&](double s) {
     torques_at(form, step, s);
-    return value(set_room(ws, k, ws.observed.carried, ws.step_start.noise[0], ws.loads.now, most));
+    return value(set_room(ws, k, ws.observed.carried, round_off(ws), ws.loads.now, most));
   };
   const double limit = hit.none() ? 1.0 : hit.s;
   hit.take(first_dip(f, f(0), f(limit), limit, rounds), k);
@@ -76,7 +82,7 @@ struct SetLimit : OwnScale {
       fit(form, step);
       auto f = [&](double s) {
         torques_at(form, step, s);
-        return value(set_room(ws, k, ws.observed.carried, ws.step_start.noise[0], ws.loads.now));
+        return value(set_room(ws, k, ws.observed.carried, round_off(ws), ws.loads.now));
       };
       const double s = first_crossing(f, before, after, hit.s);
       hit.take(s, k);
