@@ -60,11 +60,12 @@ void look_at(Form& form, Step<Form>& step, double s, const Snapshot<T>& shot) {
 /// the others hold no longer what they still do there. docs/theory/varying-ratios.md (22)
 template <class Form, class T = typename Form::Scalar>
 double before_lost_tie(Form& form, Step<Form>& step, double s, const Snapshot<T>& shot) {
-  constexpr double near = 1e-3;
   const auto& r = form.ws.ratios;
   if (r.n == 0 || r.lost < 0 || step.h == 0 || keeps_ties(r)) return s;
+  // next to a pole nothing is left of the digits of its torque
+  const double nearest = larger(1e-6, smaller(0.5, 1e-9 / step.h)), near = larger(1e-3, 1e-7 / step.h);
   const double most = value(r.plain.gram[r.lost * r.ties + r.lost]) == 0 ? s : smaller(s, near);
-  for (double back = 1e-6; back < most; back *= 4) {
+  for (double back = nearest; back < most; back *= 4) {
     look_at(form, step, s - back, shot);
     if (keeps_ties(r)) return s - back;
   }
