@@ -124,7 +124,11 @@ nb::tuple tangents(const nb::bytes& system, const Words& words, const Seeds& see
   bool good = true;
   {
     nb::gil_scoped_release release;
-    for (std::int64_t first = 0; good && (first == 0 || first < std::int64_t(n)); first += width)
+    // a run that stops early by some numbers has no derivatives by the others
+    auto goes_on = [&](std::int64_t first) {
+      return first == 0 || (first < std::int64_t(n) && found.status == int(clutchwork::Status::done));
+    };
+    for (std::int64_t first = 0; good && goes_on(first); first += width)
       good = run_chunk(system, words, seeds, first, times, t_end, options, row, work, found, slopes, moved);
   }
   if (!good) throw nb::value_error("the bytes are not a system of this core, or a word is not a number of its motion");

@@ -569,3 +569,52 @@ def test_a_signal_that_is_round_off_is_not_cut_again_and_again() -> None:
     split = refined.refined(steps, [cw.maximum("a.speed")], noise)
     assert split is not None
     assert len(split) <= refined.CUTS * count
+
+
+def test_a_peak_where_a_gear_turns_its_load_among_short_steps() -> None:
+    # seed 97052: rows of steps of a millionth of a second did not show how that instant moves
+    d = cw.Driveline("turns")
+    s0 = d.shaft("s0", inertia=0.0727)
+    d.shaft("s1", inertia=0.0257, speed=-32.1)
+    s2, s3, s4 = d.shaft("s2", inertia=0.00651), d.shaft("s3", inertia=0.171), d.shaft("s4", inertia=0.00546)
+    d.add(cw.Torque("drive", shaft=s0, torque=24.9))
+    law = cw.Tanh(kinetic=0.0557, speed=0.0451)
+    shoe = {"radius": 0.15, "hinge": 0.133, "arm": 0.284, "start": 0.0565, "end": 0.529}
+    d.add(cw.DoubleShoeBrake("shoes", shaft=s4, base=s0, friction=law, force=278.0, tolerance=2.22e-4, **shoe))
+    losses = [(0.0, 0.49, 0.98, 0.957, 0.353), (3.852, 0.59, 0.88, 0.0, 0.0), (10000.0, 0.556, 0.4, 0.241, 1.187)]
+    d.add(cw.Mesh("mesh", input=s4, output=s2, ratio=8.0, loss_table=losses))
+    d.add(cw.Gear("gear", input=s2, output=s3, ratio=0.757))
+    lining = cw.Coulomb(static=0.1775, kinetic=0.148)
+    d.add(cw.OneWayClutch("stop", base=d.housing, follower=s4, friction=lining, locked=True))
+    by = ["drive.torque", "s2.inertia"]
+    found = [
+        cw.differentiable(d, 0.101, of=cw.minimum("housing.torque"), by=by, rtol=rtol, atol=rtol / 100).gradient()
+        for rtol in (1e-9, 1e-11)
+    ]
+    # the looser one has half of the digits of its run
+    np.testing.assert_allclose(found[0].matrix, found[1].matrix, rtol=1e-3)
+
+
+def test_a_peak_at_a_point_of_a_table_by_more_numbers_than_a_run_carries() -> None:
+    d = cw.Driveline("many")
+    a = d.shaft("a", inertia=0.5)
+    d.add(cw.SpeedTorque("tent", shaft=a, torque=[(0.0, 5.0), (6.0, 9.0), (20.0, -9.0)]))
+    d.add(cw.Torque("ramp", shaft=a, torque=cw.Table([(0.1 * k, 0.2 * k) for k in range(8)])))
+    by = ["a.inertia", "tent.torque.values[1]", "tent.torque.values[2]"]
+    by += [f"ramp.torque.values[{k}]" for k in range(1, 8)]
+    tally = judged(d, 0.8, [cw.maximum("a.acceleration")], by)
+    assert tally.wrong + tally.refused + tally.apart + tally.whole == []
+    assert tally.compared > 8
+
+
+def test_a_prescribed_slip_that_passes_zero_slowly_does_not_lock() -> None:
+    # seed 96005: it was held until it had left what counts as zero, at an instant that follows from the tolerance
+    d = cw.Driveline("settles")
+    a = d.shaft("a", inertia=0.04)
+    d.shaft("fast", inertia=0.1, speed=100.0)
+    d.add(cw.PrescribedPosition("p", shaft=a, position=0.00984, cutoff=35.5))
+    d.add(cw.Brake("b", shaft=a, friction=cw.Coulomb(static=0.1, kinetic=0.1), gain=1.0, normal_force=1.0))
+    run = d.simulate(0.0977, rtol=1e-10, atol=1e-12)
+    reversals = [one for one in run.events if one.element == "b"]
+    assert len(reversals) > 2
+    assert all(one.after != "locked" for one in reversals)

@@ -205,7 +205,6 @@ MENDED: dict[str, list[int]] = {
     "ties of a step that led to rest": [22003549],
     "a ratio that would lose a light shaft far ahead": [21109558],
     "a freewheel between the shafts of a joint whose ratio passes one": [19030625],
-    "a sign of a slip that follows itself beside a limited slip": [21200560],
 }
 
 

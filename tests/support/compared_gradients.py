@@ -39,8 +39,7 @@ KNOWN, ENOUGH = 0.1, 0.01
 ZERO = {"s": 0.1, "rad": 0.1, "m": 0.1}
 # differences that are further apart still tell what misses more than so many times that
 UNLIKE, MOST = 30.0, 1e-2
-# two ways through the same run differ by round-off, grown by what is stiff, and by the parts that each chooses; those
-# of a squared jerk by as much more as they may miss
+# two ways differ by round-off, grown by what is stiff, and by the parts of each: of a squared jerk as it misses more
 BOTH_WAYS = 1e-7
 # relative tolerances that a driveline is run at, and what its derivatives may miss there, of the scale of a value
 LOOSE = ((1e-6, 1e-4), (1e-9, 1e-7))
@@ -196,11 +195,11 @@ def both_ways(tally: Tally, function: Any, given: Array, scales: Array, chosen: 
         # what changes by far more than its own size is judged by its change
         told = np.maximum(scale / sizes, np.abs(a.left))
         missed = np.where(np.isnan(given[place]), 0.0, np.abs(a.left - b.left) / told)
-        allowed = BOTH_WAYS * (ALLOWED_JERK / ALLOWED if a.name.startswith("squared_jerk") else 1.0)
-        if np.nanmax(missed, initial=0.0) > allowed:
+        more = ALLOWED_JERK / ALLOWED if a.name.startswith("squared_jerk") else 1.0
+        if np.nanmax(missed, initial=0.0) > more * BOTH_WAYS:
             tally.apart.append(f"{a.name}: forward {a.left}, back {b.left}, {np.nanmax(missed):.1e} of scale")
         for what, value in (("f(x)", values[place]), ("sweep", swept.get(place, values[place]))):
-            if not abs(a.value - value) <= allowed * scale + 1e-12 and not (np.isnan(a.value) and np.isnan(value)):
+            if not abs(a.value - value) <= 1e-7 * scale + 1e-12 and not (np.isnan(a.value) and np.isnan(value)):
                 tally.apart.append(f"{a.name}: gradient {a.value!r}, {what} {value!r}")
 
 

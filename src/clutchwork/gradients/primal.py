@@ -97,8 +97,12 @@ class Primal:
         """What each step begins with: its kind, and the number of the instant that moves, -1 of a knot that stays."""
         kinds, which = np.full(len(self.steps), SMOOTH, dtype=np.intp), np.full(len(self.steps), -1, dtype=np.intp)
         # a knot that does not move is none of those below; guards are numbered behind the events
-        guards = enumerate(self.grazes[:, :2].tolist(), len(self.events))
-        met = [(KNOT, time, -1) if what < 0 else (KINK, time, number) for number, (time, what) in guards]
+        guards = enumerate(self.grazes[:, [0, 1, 3]].tolist(), len(self.events))
+        met = [
+            (KNOT, time, -1) if what < 0 else (KINK, time, number)
+            for number, (time, what, index) in guards
+            if what < 0 or index < np.inf
+        ]
         met += [(KNOT, float(time), number) for number, time in enumerate(self.knots.times)]
         met += [(EVENT, float(time), number) for number, time in enumerate(self.events[:, 0])]
         for kind, time, number in met:

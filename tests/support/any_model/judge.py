@@ -88,8 +88,7 @@ def ending(made: Plain, base: Any) -> list[Fault]:
         return []
     kinds = [one["type"] for one in made["element"]]
     laws = [one["friction"]["type"] for one in made["element"] if isinstance(one.get("friction"), dict)]
-    # a sign of a slip at its word is no torque at rest, beside friction that follows it none that balances
-    if "naive_sign" in laws and base.status in ("chatter", "too_many_steps", "too_many_events", "zeno", "unbalanced"):
+    if "naive_sign" in laws and base.status in ("chatter", "too_many_steps", "too_many_events", "zeno"):
         return []
     # an explicit method that was asked for spends its budget where the motion is stiff: the others must not
     if base.status == "too_many_steps" and base.options.method == "dopri5":

@@ -118,6 +118,9 @@ void floor_sizes(Workspace<T>& ws) {
 
 // -------------------------------------------------------------------------------------------------------- how it moves
 
+/// [1/s] how fast a guard passes zero that something else makes jump; one that stays there passes it never.
+inline constexpr double with_jump = 1e300;
+
 /// Note how an event was met.
 template <class T>
 void note_graze(Workspace<T>& ws, int what, int component, double index, const T& shift) {
@@ -149,8 +152,9 @@ void note_borders_of(Form& form, Step<Form>& step, int place) {
       if (abs(value(margin)) > near * G::scale(form, hit, step.y0())) return;
       // as one that is met together with what does not move
       ws.moved.last = T(0), ws.moved.last_time = ws.time;
+      // the instant does not move with it
       const int noted = ws.moved.n;
-      note_graze(ws, place, G::component(ws, hit), infinity, margin);
+      if (largest_difference(margin, T(0)) > 0) note_graze(ws, place, G::component(ws, hit), infinity, margin);
       if (ws.moved.n > noted) ws.moved.instant[noted] = T(0);
       if (looks[1] == 0) return;
     }
@@ -189,7 +193,7 @@ void note_others(Workspace<T>& ws, int located) {
     // at the event, which moves, the slip of one that locks at the same instant does not change
     const T slip = rate_of(ws, int(ws.sys.elements) + c);
     const double slope = value(ws.event_context.slope[c]);
-    if (abs(value(slip)) > tolerance || slope == 0 || ws.moved.n == 0 || ws.moved.n > Moved<T>::room) continue;
+    if (abs(value(slip)) > tolerance || slope == 0 || ws.moved.n == 0 || ws.moved.n == Moved<T>::room) continue;
     double& apart = ws.moved.graze[ws.moved.n - 1].together;
     apart = larger(apart, largest_difference(slip * T(-1 / slope), T(0)));
   }
@@ -293,7 +297,7 @@ T hit_shift(Form& form, Step<Form>& step, const Hit& hit, const T* velocity) {
   const double scale = G::scale(form, hit, step.y0());
   if (has_jumped(ws, value(guard), scale)) {
     const T shift = ws.moved.here;
-    note_graze(ws, hit.what, component, infinity, shift);
+    note_graze(ws, hit.what, component, with_jump, shift);
     return shift;
   }
   if constexpr (requires { G::is_sudden(ws, 0.0); }) {

@@ -50,7 +50,7 @@ class Phase : public StepSize<typename Form::Scalar> {
   // steps at the limit of stability, of the length over the fastest rate, before an implicit method goes on
   static constexpr int most_strained = 8;
   static constexpr double strain = 1.5;
-  // of the time: a step in which a run that loses a speed ends
+  // of the time: a run that loses a speed ends in a step that is no longer
   static constexpr double shortest = 1e-9;
 
   Form form_;
@@ -205,7 +205,10 @@ class Phase : public StepSize<typename Form::Scalar> {
     if (jumped || !has_tangents<T>) linearize_start();
     // derivatives are still those at the event, where the modes are decided
     if (jumped && is_beyond(taken_form().ws)) return decide(Cause::other_event);
-    if constexpr (has_tangents<T>) linearize_behind_event();
+    if constexpr (has_tangents<T>) {
+      linearize_behind_event();
+      if (jumped) note_borders(form_, step_, Borders::held);
+    }
     if (ws_.guard.n_chattering > 0 && chatters(ws_)) return leave(Status::chatter);
     show_behind(false);
     h_ = ws_.last_step;

@@ -29,16 +29,24 @@ double line_crossing(Form& form, Step<Form>& step, const LineGuard& guard, doubl
   };
   const double q0 = guard.sign * value(form.rate(k, step.p(0))), q1 = guard.sign * value(form.rate(k, step.p(1))),
                q2 = guard.sign * value(form.rate(k, step.p(2)));
-  const double a1 = g1 - g0 + q0, a2 = q1 - q0, a3 = q2 - q1;
+  // prescribed speeds that bend between both ends are no part of the interpolant
+  const bool bend = rates_bend(ws);
+  if (bend) input_slopes_at(ws, step.t);
+  const double drift = bend ? guard.sign * step.h * value(offset_slope(ws, k)) : 0.0;
+  const double change = bend ? guard.sign * value(form.rate(k, step.y1()) - form.rate(k, step.y0())) : g1 - g0;
+  const double a1 = change + q0, a2 = q1 - q0, a3 = q2 - q1;
   // a guard that starts on its surface must leave it as the motion does, not as the interpolant does
   // docs/theory/events.md, rule 3
   const bool fresh = abs(g0) <= 1e3 * noise;
   const double leaving = guard.sign * step.h * value(ws.step_start.slope[k]);
-  const double mend = fresh && leaving * a1 <= 0 ? leaving - a1 : 0.0;
-  if (rates_bend(ws)) {
+  const double mend = fresh && leaving * (a1 + drift) <= 0 ? leaving - drift - a1 : 0.0;
+  auto added = [&](double s) { return mend * s * (1 - s) * (1 - s) * (1 - s); };
+  if (bend) {
     const double still = fresh ? noise : 0.0;
-    auto mended = [&](double s) { return at(s) + still + mend * s * (1 - s) * (1 - s) * (1 - s); };
-    return first_crossing(mended, g0 + still, g1 + still, limit);
+    auto mended = [&](double s) { return at(s) + still + added(s); };
+    const double s = first_crossing(mended, g0 + still, g1 + still, limit);
+    rough = s >= 0 && abs(added(s)) > 1e5 * noise;
+    return s;
   }
   // Bernstein coefficients of the quartic
   double b[5] = {larger(g0, 0.0), g0 + (a1 + mend) / 4, g0 + a1 / 2 + a2 / 6, g0 + 0.75 * a1 + a2 / 2 + a3 / 4, g1};
@@ -54,8 +62,8 @@ double line_crossing(Form& form, Step<Form>& step, const LineGuard& guard, doubl
   const double f_low = larger(poly(low), 0.0), f_high = poly(high);
   if (f_high >= 0) return high;
   // one that leaves its surface may come back far sooner than the step ends
-  const double s = locate(poly, low, f_low, high, f_high, fresh && leaving > 0 ? 50 : 12), rest = 1 - s;
-  rough = abs(mend) * s * rest * rest * rest > 1e5 * noise;
+  const double s = locate(poly, low, f_low, high, f_high, fresh && leaving > 0 ? 50 : 12);
+  rough = abs(added(s)) > 1e5 * noise;
   return s <= limit ? s : -1;
 }
 
