@@ -14,6 +14,9 @@ from clutchwork.declare.node import Work
 
 Array = NDArray[np.float64]
 
+# a torque before a jam that is so many times that behind it has no bound
+BEYOND = 1e9
+
 
 class Fault(NamedTuple):
     """A kind of fault, whose it is, and in words how much."""
@@ -65,6 +68,15 @@ class Seen:
         """The largest speed at the ends of a branch."""
         ends = [self.fastest[node] * abs(factor) for node, factor in branch.direction.items() if node != HOUSING]
         return max(ends, default=1.0)
+
+    @cached_property
+    def runs_away(self) -> NDArray[np.bool_]:
+        """Rows at an instant at which the torque of a gear grows beyond all bounds, on either side: there it jams."""
+        jams = [one for one in self.run.events if one.cause == "jam"]
+        found: NDArray[np.bool_] = np.isin(
+            self.time, [one.time for one in jams if abs(one.torque_before) > BEYOND * (1.0 + abs(one.torque_after))]
+        )
+        return found
 
     @cached_property
     def elements(self) -> Array:
