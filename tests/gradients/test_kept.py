@@ -96,7 +96,7 @@ def test_a_piston_that_is_told_to_fall_below_rest_first(rtol: float) -> None:
     scales = by_differences.scales(d.simulate(0.03, rtol=1e-8), function.task.outputs)
     for one in by_differences.compared(function, function.jacobian(function.x0), scales):
         # right behind rest a derivative is large beside a pressure of nearly zero: four digits fewer count later
-        assert np.all(one.missed < max(1e-6, 1e4 * rtol)), str(one)
+        assert np.all(one.missed < max(1e-6, 2e4 * rtol)), str(one)
 
 
 def test_a_speed_without_inertia_bends_at_a_knot_at_the_end() -> None:
@@ -612,9 +612,9 @@ def test_a_prescribed_slip_that_passes_zero_slowly_does_not_lock() -> None:
     d = cw.Driveline("settles")
     a = d.shaft("a", inertia=0.04)
     d.shaft("fast", inertia=0.1, speed=100.0)
-    d.add(cw.PrescribedPosition("p", shaft=a, position=0.00984, cutoff=35.5))
+    d.add(cw.PrescribedSpeed("p", shaft=a, speed=cw.Sine(amplitude=1.0, frequency=20.0, damping=150.0)))
     d.add(cw.Brake("b", shaft=a, friction=cw.Coulomb(static=0.1, kinetic=0.1), gain=1.0, normal_force=1.0))
-    run = d.simulate(0.0977, rtol=1e-10, atol=1e-12)
+    run = d.simulate(0.09, rtol=1e-10, atol=1e-12)
     reversals = [one for one in run.events if one.element == "b"]
     assert len(reversals) > 2
     assert all(one.after != "locked" for one in reversals)
