@@ -622,3 +622,14 @@ def test_a_prescribed_slip_that_passes_zero_slowly_does_not_lock() -> None:
     reversals = [one for one in run.events if one.element == "b"]
     assert len(reversals) > 2
     assert all(one.after != "locked" for one in reversals)
+
+
+def test_a_wave_that_begins_at_zero_presses_from_there_or_later() -> None:
+    # seed 99030: a little less of its phase leaves the clutch open for a while
+    d = cw.Driveline("wave")
+    a = d.shaft("a", inertia=0.02, speed=20.0)
+    press = cw.Sine(amplitude=6000.0, frequency=4.0)
+    d.add(cw.Brake("c", shaft=a, friction=cw.Coulomb(static=0.3, kinetic=0.3), gain=1e-4, pressure=press))
+    tally = judged(d, 0.1, ["a.speed", cw.squared_jerk("a")], ["c.pressure.phase", "c.pressure.amplitude"])
+    assert tally.wrong + tally.refused + tally.apart + tally.whole == []
+    assert tally.rightly == 1

@@ -18,8 +18,10 @@ if TYPE_CHECKING:
 Array = NDArray[np.float64]
 Mask = NDArray[np.bool_]
 
-# numbers of a piece of a signal
+# numbers of a piece of a signal: a cubic, and size, frequency, phase and decay of two waves
 PIECE = 12
+# a value that is zero, of what it is made of
+ROUND_OFF = 1e-15
 
 
 def unpressed(
@@ -54,13 +56,23 @@ def _at_knots(
     acts: Mask = np.asarray(pieces[:, :4].any(axis=1) | pieces[:, [4, 8]].any(axis=1))
     # a run may begin at one, where it does not matter what was before
     goes_on = np.append(False, acts[:-1]) | (bounds[:-1] == run[0])
-    at_zero = (pieces[:, 0] == 0.0) & ~pieces[:, [4, 8]].any(axis=1) & acts & goes_on
-    for piece in np.flatnonzero(at_zero).tolist():
-        moved: Mask = np.any(slopes.matrix[slopes.within(first + PIECE * piece, 1)] != 0.0, axis=0)
+    waves = pieces[:, [4, 8]] * np.sin(pieces[:, [6, 10]])
+    nothing = ROUND_OFF * np.abs(pieces[:, [0, 4, 8]]).sum(axis=1)
+    for piece in np.flatnonzero((np.abs(pieces[:, 0] + waves.sum(axis=1)) <= nothing) & acts & goes_on).tolist():
+        moved = _begins(pieces[piece], slopes, first + PIECE * piece) != 0.0
         time = float(bounds[piece])
         if moved.any() and run[0] <= time < run[1]:
             what = f"{system.inputs[number].name} is 0 at its knot at {time:g} s, where it begins or ends"
             yield time, f"{what}; give that point a value", moved
+
+
+def _begins(piece: Array, slopes: Slopes, first: int) -> Array:
+    """Derivatives by the numbers of the value with which a piece begins, whose first word is given."""
+    found: Array = slopes.of(np.array([first]))[0]
+    for wave in (4, 8):
+        by_size, by_phase = slopes.of(np.array([first + wave, first + wave + 2]))
+        found = found + np.sin(piece[wave + 2]) * by_size + piece[wave] * np.cos(piece[wave + 2]) * by_phase
+    return found
 
 
 @memoize
