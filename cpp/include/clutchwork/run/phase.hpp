@@ -153,16 +153,16 @@ class Phase : public StepSize<typename Form::Scalar> {
     if (shown != Status::running) return leave(shown);
     // counted as one, so that a run counts alike wherever it is left
     linearized ? void(++ws_.statistics.jacobians) : linearize_start();
-    if constexpr (has_tangents<T>) {
-      if (event || ws_.statistics.steps == 0) note_borders(form_, step_, borders_here());
-    }
+    if constexpr (has_tangents<T>) note_borders_here(event);
     h_ = first_length(event);
   }
 
-  /// Those on which the phase may begin.
-  Borders borders_here() const {
-    if (ws_.statistics.steps == 0) return Borders::all;
-    return ws_.event_context.cause == Cause::input ? Borders::carried : Borders::held;
+  /// Borders on which the phase may begin.
+  void note_borders_here(bool event)
+    requires has_tangents<T>
+  {
+    const bool start = ws_.statistics.steps == 0, knot = ws_.event_context.cause == Cause::input;
+    if (event || start) note_borders(form_, step_, start ? Borders::all : knot ? Borders::carried : Borders::held);
   }
 
   double first_length(bool event) {
