@@ -21,7 +21,7 @@ CONTACTS = {
     r"\min\!\left( \frac{T_{\max}}{T_c}, 10^6 \right)": "ratio < 1e6 ? ratio : 1e6",
     "$10^{-12}$ of what all torques together cause, or $10^{-10}$": "larger(1e-10 * scale, 1e-12 * ",
     "leaves the tolerance of within a millisecond": "return arrived ? larger(round_off, 1e3 * tolerance)",
-    "alone within a microsecond, or, of one that passes zero, within a second": "return (arrived ? 1.0 : 1e6) * tolerance",
+    "within a microsecond, or, of one that passes zero, within a second": "return (arrived ? 1.0 : 1e6) * tolerance",
     r"one that more than $2 \cdot 10^{-12}$ of all torques makes": "return larger(round_off, 2e-12 * ws.decision.pull",
     "at most $4 n + 5$ rounds": "round <= 4 * ws.sys.contacts + 4",
     "while time does not advance, to $10^{-9}$ s": "ws.time - instant <= 1e-9",
