@@ -611,6 +611,24 @@ def test_a_peak_at_a_point_of_a_table_by_more_numbers_than_a_run_carries() -> No
     assert tally.compared > 8
 
 
+def test_instants_of_pieces_by_numbers_of_which_only_the_last_move_a_border() -> None:
+    # runs by eight numbers at a time note as many guards, whatever moves with them
+    d = cw.Driveline("two parts")
+    a, b, c = d.shaft("a", inertia=0.5), d.shaft("b", inertia=0.2), d.shaft("c", inertia=0.3)
+    d.add(cw.SpeedTorque("tent", shaft=a, torque=[(0.0, 5.0), (6.0, 9.0), (20.0, -9.0)]))
+    d.add(cw.Torque("ramp", shaft=a, torque=cw.Table([(0.1 * k, 0.2 * k) for k in range(8)])))
+    d.add(cw.Backlash("play", base=b, follower=c, gap=0.02, initial_twist=0.01))
+    d.add(cw.Torque("idle", shaft=c, torque=cw.Table([(0.0, 0.0), (1.0, 0.0)])))
+    by = ["a.inertia", *(f"ramp.torque.values[{k}]" for k in range(1, 8))]
+    by += ["idle.torque.values[1]", "tent.torque.values[1]", "tent.torque.values[2]"]
+
+    def plain(numbers: list[str]) -> Any:
+        function = cw.differentiable(d, 0.8, of=cw.maximum("a.acceleration"), by=numbers, **TIGHT)
+        return function.engine.lines(function.engine.runs.point(function.x0))[1][0].left
+
+    np.testing.assert_allclose(plain(by), [plain([one])[0] for one in by], rtol=1e-8, atol=1e-12)
+
+
 def test_a_prescribed_slip_that_passes_zero_slowly_does_not_lock() -> None:
     # seed 96005: it was held until it had left what counts as zero, at an instant that follows from the tolerance
     d = cw.Driveline("settles")

@@ -213,3 +213,17 @@ def test_a_jump_is_made_once_where_a_shaft_without_inertia_follows_it() -> None:
     kinetic = 0.5 * (2.0 * 6.0**2 + 0.3 * 3.0**2 + 0.1 * 9.0**2)
     assert run.energy.sources == {"motor": pytest.approx(kinetic + heat, rel=1e-9)}
     assert abs(run.energy.residual) <= 1e-9 * kinetic
+
+
+def test_what_slips_beside_a_speed_that_bends_locks_where_its_slip_vanishes():
+    # friction is constant and the other speed prescribed: events are exact at any tolerance, however long the steps
+    d = cw.Driveline("driven")
+    u, w = d.shaft("u", inertia=1.0), d.shaft("w", inertia=0.2)
+    d.add(cw.PrescribedSpeed("p", shaft=u, speed=cw.Sine(amplitude=10.0, frequency=3.0)))
+    law = cw.Coulomb(static=0.12, kinetic=0.1)
+    d.add(cw.Clutch("c", base=u, follower=w, friction=law, gain=1.0, normal_force=200.0, locked=True))
+    times = np.linspace(0.0, 1.0, 101)
+    loose, tight = (d.simulate(1.0, rtol=rtol, atol=rtol / 100, times=times) for rtol in (1e-3, 1e-12))
+    assert len(loose.events) == len(tight.events) > 10
+    # round-off of speeds of 10 rad/s
+    np.testing.assert_allclose(loose["w.speed"], tight["w.speed"], rtol=0.0, atol=1e-12)

@@ -133,14 +133,29 @@ void note_graze(Workspace<T>& ws, int what, int component, double index, const T
   m.graze[m.n++] = {ws.time, double(what), double(component), index, apart};
 }
 
+/// A border on which something stays, whose instant does not move: once, from where it is there first, with the largest
+/// derivative of its margin. How many there are follows from values alone, as runs by other numbers have the same.
+template <class T>
+void note_border(Workspace<T>& ws, int what, int component, const T& margin) {
+  Moved<T>& m = ws.moved;
+  const double apart = largest_difference(margin, T(0));
+  for (int i = 0; i < m.n; ++i) {
+    Graze& known = m.graze[i];
+    if (known.what != what || known.component != component || known.index < infinity) continue;
+    known.together = larger(known.together, apart);
+    return;
+  }
+  if (m.n == Moved<T>::room) return;
+  m.instant[m.n] = T(0);
+  m.graze[m.n++] = {ws.time, double(what), double(component), infinity, apart};
+}
+
 /// Borders of a guard at which the present state is, and which move with the numbers: on which side it is is open.
 template <class G, class Form>
 void note_borders_of(Form& form, Step<Form>& step, int place) {
   constexpr double near = 1e-9;
   using T = typename Form::Scalar;
   Workspace<T>& ws = form.ws;
-  const T last = ws.moved.last;
-  const double last_time = ws.moved.last_time;
   // a load may be turned by where a signal goes from here
   const double far = ws.in.next_knot < infinity ? 0.37 * (ws.in.next_knot - ws.time) : 1e-3 * (1 + abs(ws.time));
   const double looks[] = {0.0, std::is_same_v<G, LineFlip> ? far : 0.0};
@@ -150,16 +165,10 @@ void note_borders_of(Form& form, Step<Form>& step, int place) {
       hit.what = place, hit.index = index, ws.in.time = -infinity;
       const T margin = G::at(form, step, hit, ws.time + later, step.y0(), hit.who);
       if (abs(value(margin)) > near * G::scale(form, hit, step.y0())) return;
-      // as one that is met together with what does not move
-      ws.moved.last = T(0), ws.moved.last_time = ws.time;
-      // the instant does not move with it
-      const int noted = ws.moved.n;
-      if (largest_difference(margin, T(0)) > 0) note_graze(ws, place, G::component(ws, hit), infinity, margin);
-      if (ws.moved.n > noted) ws.moved.instant[noted] = T(0);
+      note_border(ws, place, G::component(ws, hit), margin);
       if (looks[1] == 0) return;
     }
   });
-  ws.moved.last = last, ws.moved.last_time = last_time;
   ws.in.time = -infinity;
 }
 

@@ -50,7 +50,7 @@ class Phase : public StepSize<typename Form::Scalar> {
   // steps at the limit of stability, of the length over the fastest rate, before an implicit method goes on
   static constexpr int most_strained = 8;
   static constexpr double strain = 1.5;
-  // of the time: a run that loses a speed ends in a step that is no longer
+  // of the time: the last step of a run that loses a speed is no longer
   static constexpr double shortest = 1e-9;
 
   Form form_;
