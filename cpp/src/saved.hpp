@@ -25,7 +25,7 @@ void describe(W& ws, A& a) {
       a.number(ws.in.next_knot);
   a.whole(ws.guard.n_faulty, 0, nc), a.whole(ws.contact.failed, -1, nc - 1), a.whole(ws.guard.n_loads, 0, nc);
   a.whole(ws.guard.reversals, 0, 1 << 30), a.whole(ws.guard.reversals_since, 0, most);
-  a.number(ws.guard.balanced_at), a.number(ws.guard.zero, 0, 1e300);
+  a.number(ws.guard.balanced_at), a.number(ws.guard.jumped_at), a.number(ws.guard.zero, 0, 1e300);
   a.number(ws.fixed.time), a.number(ws.fixed.before, 0, 1e300), a.number(ws.fixed.origin);
   a.whole(ws.fixed.count, 0, most), a.whole(ws.fixed.impacts, 0, most), a.whole(ws.fixed.fresh, 0, 1);
   a.number(ws.in.time), a.whole(ws.events.n, 0, EventBuffer::room + 3 * nc);

@@ -374,3 +374,21 @@ def test_an_element_of_gms_on_its_way_back_does_not_turn_the_slip() -> None:
     d.add(cw.PrescribedSpeed("p", shaft=a, speed=speed))
     d.add(brake("b", a, 1.0, law))
     assert d.simulate(0.6, rtol=1e-6, atol=1e-6).status == "done"
+
+
+def test_what_settles_at_once_behind_a_jump_is_seen_in_all_rows() -> None:
+    """A slip follows its load within a microsecond: one long step would end right and be wrong in between."""
+    d = cw.Driveline("settles")
+    a = d.shaft("a", inertia=0.01)
+    d.shaft("fast", inertia=1.0, speed=500.0)
+    load = cw.Pulse(height=3e4, period=0.4, width=0.1, offset=1e4, start=0.2)
+    d.add(cw.Torque("drive", shaft=a, torque=1.0))
+    d.add(brake("b", a, load, cw.Tanh(kinetic=1.0, speed=1.0)))
+    run = d.simulate(1.0, method="rodas5p", rtol=1e-8)
+    edges = np.array([0.0, 0.2, 0.3, 0.6, 0.7])
+    settled = np.abs(run.time[:, None] - edges).min(axis=1) > 1e-4
+    slip = 0.5 * np.arctanh(1.0 / run["b.normal_force"])
+    # the tolerance is that of the fast shaft, 5e-6 rad/s, of which a slip of 1e-4 rad/s has ten
+    np.testing.assert_allclose(run["a.speed"][settled], slip[settled], rtol=0.01)
+    # 1 N m on 0.01 kg m2 is 100 rad/s2
+    assert np.abs(run["a.acceleration"][settled]).max() < 1.0

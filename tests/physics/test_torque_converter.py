@@ -213,6 +213,21 @@ def test_coupling_in_all_quadrants(base: float, follower: float) -> None:
     assert run.energy.heat["c"] == pytest.approx(0.1 * k * fast**2 * abs(base - follower), rel=1e-9, abs=1e-12)
 
 
+def test_a_coupling_that_reverses_within_one_step() -> None:
+    """The follower falls below the base and beyond it: both ends of the step are on one piece, not what is between."""
+    ratios, capacity = (-0.5, 0.3, 0.8, 1.0), (1.61e-4, 1.45e-4, 8.05e-5, 0.0)
+    d = cw.Driveline("reverses")
+    a, b = d.shaft("a", inertia=100.0, speed=-1.08), d.shaft("b", inertia=0.00831, speed=16.5)
+    d.add(cw.FluidCoupling("c", base=a, follower=b, speed_ratio=ratios, capacity=capacity))
+    d.add(cw.Torque("drive", shaft=b, torque=-261.0))
+    run = d.simulate(1.0507e-3, first_step=1.05e-3, rtol=1e-3)
+    by_base = np.abs(run["a.speed"]) >= np.abs(run["b.speed"])
+    fast, slow = (np.where(which, run["a.speed"], run["b.speed"]) for which in (by_base, ~by_base))
+    torque = np.interp(slow / fast, ratios, capacity) * fast * np.abs(fast) * np.where(by_base, 1.0, -1.0)
+    # round-off of speeds of 20 rad/s at a slope of 1e-2 N m s/rad
+    np.testing.assert_allclose(run["c.torque"], torque, rtol=1e-12, atol=1e-15)
+
+
 @pytest.mark.parametrize("lag", [0.0, 1e-4])
 def test_a_turbine_that_turns_around_beside_a_standing_impeller(lag: float) -> None:
     """It turns back free, and is braked by the square of its speed from rest on: there is no ratio of speeds there."""

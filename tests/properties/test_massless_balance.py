@@ -173,3 +173,18 @@ def test_rows_inside_of_steps_balance() -> None:
     run = simulate(d, 0.05)
     wanted = 35.0 / damping * np.sin(2.0 * np.pi * 60.0 * run.time)
     assert np.abs(run["a.speed"] - wanted).max() <= 1e-8 * 35.0 / damping
+
+
+def test_torques_that_fade_to_round_off_balance_in_every_row() -> None:
+    """A spring that relaxes through a damper: what is missing is compared with itself, not with a torque of 1e-16."""
+    d = cw.Driveline("fades")
+    a, b = d.shaft("a", speed=64.8), d.shaft("b")
+    d.shaft("beside", inertia=0.1, speed=4.68)
+    d.add(cw.Damper("damper", base=a, follower=b, damping=1.3))
+    d.add(cw.Spring("spring", base=a, follower=b, stiffness=2550.0, initial_twist=0.0164))
+    points = [(0.01139, 0.05774), (0.01661, 0.0), (0.04617, 0.0), (0.05486, 0.1185)]
+    d.add(cw.PrescribedPosition("motion", shaft=a, position=cw.Table(points), cutoff=3.3))
+    run = d.simulate(0.0626)
+    # a billionth of the largest torque at each instant, or round-off of a speed of 60 rad/s times the damping
+    allowed = 1e-9 * np.abs(run["spring.torque"]) + 1e-13
+    assert np.all(np.abs(run["damper.torque"] + run["spring.torque"]) < allowed)

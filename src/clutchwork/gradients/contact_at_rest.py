@@ -35,15 +35,30 @@ def unpressed(
     for number in pressing(system) if slopes.touch(first, size) else ():
         start, count = (int(system.arrays[f"input_{what}"][number]) for what in ("first", "count"))
         pieces = words[first + PIECE * start : first + PIECE * (start + count)].reshape(count, PIECE)
-        bounds = np.r_[words[time + start : time + start + count], np.inf]
+        period = float(chart.assembled.system.arrays["input_period"][number])
+        begins = words[time + start : time + start + count]
+        bounds = np.r_[begins, begins[0] + period if period > 0.0 else np.inf]
         for piece in np.flatnonzero(~pieces[:, :4].any(axis=1) & ~pieces[:, [4, 8]].any(axis=1)).tolist():
             moved: Mask = np.any(slopes.matrix[slopes.within(first + PIECE * (start + piece), 4)] != 0.0, axis=0)
-            if moved.any() and bounds[piece] < end and bounds[piece + 1] > begin:
-                since, until = max(float(bounds[piece]), begin), min(float(bounds[piece + 1]), end)
+            since, until = _first_time(bounds, piece, period, begin)
+            if moved.any() and since < end and until > begin:
+                since, until = max(since, begin), min(until, end)
                 free = ", ".join(names[column] for column in np.flatnonzero(moved).tolist())
                 what = f"{system.inputs[number].name} is 0 from {since:g} to {until:g} s"
                 yield since, f"{what}, where a little more of {free} presses and a little less does not", moved
-        yield from _at_knots(system, number, pieces, bounds, slopes, first + PIECE * start, (begin, end))
+        knots = bounds if period <= 0.0 else bounds + period * np.maximum(np.ceil((begin - bounds) / period), 0.0)
+        yield from _at_knots(system, number, pieces, knots, slopes, first + PIECE * start, (begin, end))
+
+
+def _first_time(bounds: Array, piece: int, period: float, begin: float) -> tuple[float, float]:
+    """When a signal has a piece first behind the begin of a run [s]; a periodic one rests in its last before it starts."""
+    since, until = float(bounds[piece]), float(bounds[piece + 1])
+    if period <= 0.0:
+        return since, until
+    if piece == len(bounds) - 2 and begin < bounds[0]:
+        return begin, float(bounds[0])
+    later = period * max(np.floor((begin - until) / period) + 1.0, 0.0)
+    return since + later, until + later
 
 
 def _at_knots(
@@ -54,8 +69,8 @@ def _at_knots(
     Parameters: first, the word of the first piece; run, its begin and end [s].
     """
     acts: Mask = np.asarray(pieces[:, :4].any(axis=1) | pieces[:, [4, 8]].any(axis=1))
-    # a run may begin at one, where it does not matter what was before
-    goes_on = np.append(False, acts[:-1]) | (bounds[:-1] == run[0])
+    # a periodic signal comes from its last piece; a run may begin at one, where it does not matter what was before
+    goes_on = np.append(acts[-1] & np.isfinite(bounds[-1]), acts[:-1]) | (bounds[:-1] == run[0])
     waves = pieces[:, [4, 8]] * np.sin(pieces[:, [6, 10]])
     nothing = ROUND_OFF * np.abs(pieces[:, [0, 4, 8]]).sum(axis=1)
     for piece in np.flatnonzero((np.abs(pieces[:, 0] + waves.sum(axis=1)) <= nothing) & acts & goes_on).tolist():

@@ -49,6 +49,12 @@ def add_jerk(primal: Primal, signal: str, acceleration: Array, into: Functional)
         add_shift(primal, int(step) + 1, float(before[step] ** 2 - behind[step] ** 2), into)
 
 
+def seen(steps: Steps, acceleration: Array) -> float:
+    """What the rows of the steps say of its value: steps too short for runs with derivatives have none."""
+    varying = _varying(acceleration)
+    return float(np.einsum("nij,ni,nj->", steps.squared_slope, varying, varying))
+
+
 def missed(primal: Primal, signal: str, acceleration: Array, *, is_massless: bool) -> list[tuple[Functional, float]]:
     """What moves and has another jerk on both sides, and how little is known of that there.
 

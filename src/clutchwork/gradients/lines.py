@@ -21,6 +21,8 @@ Places = NDArray[np.intp]
 ALIKE = 1e-6
 # what is not known of a derivative may be so much of the value, for a number that changes by all of itself
 UNKNOWN = 1e-6
+# share of a squared jerk in steps that runs with derivatives do not look into, from which on it has none
+UNSEEN = 1e-3
 # a number that passes zero has at least this size, of the largest one of its kind
 PASSES = 1e-3
 # values below this are round-off
@@ -78,11 +80,20 @@ def _columns(one: Measure) -> Places:
     return np.concatenate([NOWHERE, *one.changes[0].columns]) if one.at is not None else NOWHERE
 
 
-def _line(run: Run, name: str, one: Measure, sizes: Array, allowed: float) -> Line:
+def _nothing(name: str, one: Measure, t_end: float) -> str:
+    """Why a measure has no derivatives; none where it has."""
     if not one.changes:
-        nothing, remedy = np.full(len(sizes), np.nan), "take one that does, or a later end time"
-        why = f"{name} does not happen before {run.primal.t_end:g} s; {remedy}"
-        return Line(name, one.value, 0.0, nothing, nothing, one.until, none=why)
+        return f"{name} does not happen before {t_end:g} s; take one that does, or a later end time"
+    if one.unseen > UNSEEN:
+        what = f"{min(one.unseen, 1.0):.2g} of {name} is from motion that settles within a nanosecond"
+        return f"{what}, which has no derivatives; give what is so stiff more inertia, or start it where it has settled"
+    return ""
+
+
+def _line(run: Run, name: str, one: Measure, sizes: Array, allowed: float) -> Line:
+    if none := _nothing(name, one, run.primal.t_end):
+        nothing = np.full(len(sizes), np.nan)
+        return Line(name, one.value, 0.0, nothing, nothing, one.until, none=none)
     found = np.array([run.slope(change) for change in one.changes])
     least = most = found[0]
     why, lost = "", unknown(run, one, sizes)

@@ -44,6 +44,7 @@ class Measure(NamedTuple):
     is_least: bool = False  # a minimum, which of equal ones is the one that falls most
     missed: tuple[tuple[Functional, float], ...] = ()  # what moves, and by how much its share in the value is not known
     is_massless: bool = False  # of a shaft whose accelerations are not known well
+    unseen: float = 0.0  # share of the value that is not in the rows of the steps
 
 
 class Context(NamedTuple):
@@ -147,4 +148,5 @@ def _jerk(primal: Primal, one: SquaredJerk, is_massless: bool) -> Measure:
     missed = tuple(jerk.missed(primal, one.signal, acceleration, is_massless=is_massless))
     kinks = jerk.kinks(primal, acceleration)
     value = primal.jerks[one.signal]
-    return Measure(value, (into,), primal.t_end, kinks=kinks, missed=missed, is_massless=is_massless)
+    unseen = abs(value - jerk.seen(primal.steps, acceleration)) / max(value, 1e-291)
+    return Measure(value, (into,), primal.t_end, kinks=kinks, missed=missed, is_massless=is_massless, unseen=unseen)

@@ -15,6 +15,7 @@ from clutchwork.declare.layout import DONE
 from clutchwork.gradients import extremes
 from clutchwork.gradients.measures import number_of
 from clutchwork.gradients.refined import Seen, WithinSteps, refined
+from clutchwork.gradients.resolved import resolved
 from clutchwork.gradients.steps import NO_STEPS, Steps
 from clutchwork.results.forms import all_reads
 from clutchwork.sweeps.batch import CoreOutputs
@@ -86,9 +87,17 @@ class PlainRuns:
         whole = split = steps.covering()
         if run.status == DONE:
             places, rows_at = [columns.index(one) for one in seen], partial(self.rows_at, system, columns)
-            split, _ = self.refined(whole, run.rows, own[0], places, rows_at)
+            split, rows = self.refined(whole, run.rows, own[0], places, rows_at)
+            split = self._resolved(split, rows, own[0])
         jerks = {one.signal: _jerk(run, steps, own[0][one.signal]) for one in ones if isinstance(one, SquaredJerk)}
         return run, whole.inside() if split is whole else split, jerks
+
+    def _resolved(self, steps: Steps, rows: Array, forms: Mapping[str, Form]) -> Steps:
+        """The steps short enough for the polynomials of what is asked for within them."""
+        ones = [one for one in self.wanted.outputs.values() if isinstance(one, IN_STEPS)]
+        known = [(one, np.asarray(forms[one.signal](rows), dtype=float)[steps.rows]) for one in ones]
+        jerks = [values for one, values in known if isinstance(one, SquaredJerk)]
+        return resolved(steps, jerks, [(one, values) for one, values in known if isinstance(one, Extreme)])
 
     def _call(self, systems: Sequence[bytes], columns: Sequence[int], parts: int, instants: Array | None = None) -> Any:
         count = len(systems)

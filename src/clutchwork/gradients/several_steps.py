@@ -12,6 +12,7 @@ from numpy.polynomial import Polynomial
 from numpy.typing import NDArray
 
 from clutchwork.gradients.primal import SMOOTH, Primal
+from clutchwork.sweeps.parts import PARTS
 
 Array = NDArray[np.float64]
 # values of all rows from a first to a last step
@@ -42,7 +43,9 @@ def top(primal: Primal, values: Values, step: int, share: float) -> tuple[int, f
 
 def _fitted(primal: Primal, values: Values, step: int) -> Polynomial | None:
     """The polynomial over as many steps around one as go on smoothly and as it fits; None where it does not fit few."""
-    steps, kinds, found, allowed = primal.steps, primal.between[0], None, np.inf
+    steps, kinds, found = primal.steps, primal.between[0], None
+    # it says no more than that of the step itself where that misses less
+    allowed = float(abs(steps.basis[step, PARTS] @ values(step, step)))
     for reach in REACHES:
         first, last = step - reach, step + reach
         if first < 0 or last >= len(steps) or np.any(kinds[first + 1 : last + 1] != SMOOTH):

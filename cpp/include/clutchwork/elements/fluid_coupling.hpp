@@ -1,5 +1,6 @@
 #pragma once
 #include <clutchwork/component.hpp>
+#include <clutchwork/components/regions.hpp>
 #include <clutchwork/components/speed_ratio.hpp>
 
 namespace clutchwork::elements {
@@ -47,11 +48,12 @@ struct FluidCoupling : declared::FluidCoupling {
     const S slow = by_base ? at.rates[Way::follower] : at.rates[Way::base];
     const S slip = by_base ? at.rates[Way::slip] : -at.rates[Way::slip];
     // near rest, where the torque vanishes, round-off does not change the piece
-    const S size = abs(fast) + S(1.0), turn = S(fast < S(0) ? -1 : 1) / size;
-    const S low = (slow - S(piece == 0 ? -1.0 : ratios[piece - 1]) * fast) * turn;
-    const S high = -(slip + S(1.0 - ratios[piece]) * fast) * turn;
-    who = high < low ? 1 : 0;
-    return smaller(low, high);
+    const auto size = abs(value(fast)) + 1.0;
+    const S turn = S((value(fast) < 0 ? -1 : 1) / size);
+    Least<S> least(who);
+    least.watch((slow - S(piece == 0 ? -1.0 : ratios[piece - 1]) * fast) * turn, 0);
+    least.watch(-(slip + S(1.0 - ratios[piece]) * fast) * turn, 1);
+    return least.margin();
   }
   template <class T, class S>
   static int cross(const Params<T>& p, const At<S>& at, int who, S*) {

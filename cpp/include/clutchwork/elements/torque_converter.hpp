@@ -1,5 +1,6 @@
 #pragma once
 #include <clutchwork/component.hpp>
+#include <clutchwork/components/regions.hpp>
 #include <clutchwork/components/speed_ratio.hpp>
 
 namespace clutchwork::elements {
@@ -47,14 +48,12 @@ struct TorqueConverter : declared::TorqueConverter {
     const List ratios = list_of(p.speed_ratio, at.points);
     const S &w = at.rates[Way::impeller], &t = at.rates[Way::turbine], &slip = at.rates[Way::slip];
     // near rest, where the torques vanish, round-off does not change the piece
-    const S size = abs(w) + abs(t) + S(1.0);
+    const auto size = abs(value(w)) + abs(value(t)) + 1.0;
     const int n = ratios.count, piece = without_stator(n, at.piece), i = piece % n;
-    S least = S(1e300);
-    auto watch = [&](const S& guard, int number) {
-      if (guard < least) least = guard, who = number;
-    };
+    Least<S> least(who);
+    auto watch = [&](const S& guard, int number) { least.watch(guard / S(size), number); };
     if (piece != at.piece)
-      watch(-at.state[impeller_torque] / (abs(at.state[impeller_torque]) + S(1.0)) * size, catches);
+      least.watch(-at.state[impeller_torque] / S(abs(value(at.state[impeller_torque])) + 1.0), catches);
     if (piece < n) {
       watch(w, stop);
       if (i > 0) watch(t - S(ratios[i - 1]) * w, down);
@@ -67,7 +66,7 @@ struct TorqueConverter : declared::TorqueConverter {
     } else {
       watch(-w, back), watch(-t, stop);
     }
-    return least / size;
+    return least.margin();
   }
   template <class T, class S>
   static int cross(const Params<T>& p, const At<S>& at, int who, S*) {

@@ -201,7 +201,7 @@ class Together {
     if (work || rows) write(rows);
     for (int i = 0; i < n_lanes; ++i) {
       if (!active_[i] || !counts_[i]) continue;
-      visited_[i] = alone_[i] || doubtful[i];
+      visited_[i] = alone_[i] || doubtful[i] || pace(i).follows_jump();
       bool nothing = true;
       if (visited_[i]) {
         unload(i);

@@ -127,21 +127,26 @@ bool balance_massless(Form& form, Step<Form>& step) {
   return way > jump * (1 + fastest);
 }
 
-/// What is missing in the balance d of the speeds without inertia, of the torques at them.
+/// What is missing in the balance of the speeds without inertia, and the sizes of the torques at them.
+struct Imbalance {
+  double missing = 0, size = 0;
+  /// Whether that is more than a share of the torques.
+  bool exceeds(double share) const { return missing > share * size; }
+};
 template <class Form, class T = typename Form::Scalar>
-double share_missing(Form& form, const T* d) {
+Imbalance imbalance_of(Form& form, const T* d) {
   Workspace<T>& ws = form.ws;
   const Compressed<T>& rows = ws.rows.rate;
-  double missing = 0, size = 0;
+  Imbalance found;
   for (int k = 0; k < ws.n_branches; ++k) {
     for (int e = rows.first[k]; e < rows.first[k + 1]; ++e) {
-      if (is_massless(ws, rows.col[e])) size += abs(value(rows.val[e] * ws.observed.torque[k]));
+      if (is_massless(ws, rows.col[e])) found.size += abs(value(rows.val[e] * ws.observed.torque[k]));
     }
   }
   for (int i = 0; i < form.nz(); ++i) {
-    if (is_massless(ws, i)) missing = larger(missing, abs(value(d[i])));
+    if (is_massless(ws, i)) found.missing = larger(found.missing, abs(value(d[i])));
   }
-  return missing > 0 ? missing / size : 0.0;
+  return found;
 }
 
 /// Speeds without inertia of y, inside of a step, to where their torques balance: an interpolant has them less exactly
@@ -152,15 +157,16 @@ template <class Form, class T = typename Form::Scalar>
   constexpr double enough = 1e-9;
   Workspace<T>& ws = form.ws;
   const int nz = form.nz();
-  double left = share_missing(form, d);
-  for (int round = 0; round < rounds && left > enough; ++round) {
+  Imbalance left = imbalance_of(form, d);
+  for (int round = 0; round < rounds && left.exceeds(enough); ++round) {
     for (int i = 0; i < nz; ++i) b[i] = is_massless(ws, i) ? d[i] : T(0);
     if (!solve_held(form, b)) return;
     for (int i = 0; i < nz; ++i) y[i] += b[i];
     observe(form, t, y, d);
-    const double before = left;
-    left = share_missing(form, d);
-    if (left < before) continue;
+    const double before = left.missing;
+    left = imbalance_of(form, d);
+    // torques may fade to round-off, of which the same share stays missing
+    if (left.missing < before) continue;
     for (int i = 0; i < nz; ++i) y[i] -= b[i];
     return observe(form, t, y, d);
   }

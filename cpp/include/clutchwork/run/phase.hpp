@@ -45,6 +45,8 @@ class Phase : public StepSize<typename Form::Scalar> {
   static constexpr double most_cut_error = 0.3;
   // of a step towards rest: where inside it is checked, and how much of the tolerance an interpolant may miss there
   static constexpr double inner = 0.7, most_inner_error = 10;
+  // of the tolerance: how much an interpolant may miss in the first step behind a jump
+  static constexpr double most_missed_behind_jump = 10;
   // of the tolerance: an interpolant that says nothing of a slip
   static constexpr double much_missed = 1e3;
   // steps at the limit of stability, of the length over the fastest rate, before an implicit method goes on
@@ -148,6 +150,7 @@ class Phase : public StepSize<typename Form::Scalar> {
       if (event && leave_event(form_, step_)) balance_massless(form_, step_);
     }
     ws_.fresh_phase = ws_.stiffened = false;
+    if (event) ws_.guard.jumped_at = ws_.time;
     // at a knot the row is the right limit, which comes after it
     const Status shown = ws_.time < ws_.in.next_knot ? emit_start(form_, step_, sink_, event) : Status::running;
     if (shown != Status::running) return leave(shown);
@@ -199,6 +202,7 @@ class Phase : public StepSize<typename Form::Scalar> {
   void end(Status status) { status_ = status; }
   /// Nothing needs a decision, but for torques that have jumped beyond what locked contacts hold.
   void go_on(bool jumped) {
+    if (jumped) ws_.guard.jumped_at = ws_.time;
     if constexpr (!Form::small) {
       if (jumped && balance_massless(form_, step_)) export_state(form_, step_.y0());
     }
@@ -298,11 +302,13 @@ class Phase : public StepSize<typename Form::Scalar> {
     export_state(form_, step_.y0());
     tells_all(form_) ? note_start(form_) : note_before(form_, step_, 0.0);
     if (knots_crowd(ws_)) return leave(Status::zeno);
-    const bool jumps = (!Form::small || sink_.steps > 0) && any_jumps(ws_);
+    const bool jumps = any_jumps(ws_);
+    if (jumps) ws_.guard.jumped_at = ws_.time;
     if (knot_decides(ws_)) return decide(Cause::input);
     if constexpr (!Form::small) {
       if (jumps && balance_massless(form_, step_)) export_state(form_, step_.y0());
     }
+    if constexpr (Form::full && has_tangents<T>) tie_derivatives();
     linearize_start();
     if (knot_lets_go(taken_form().ws)) return decide(Cause::input);
     if constexpr (has_tangents<T>) {
@@ -310,6 +316,19 @@ class Phase : public StepSize<typename Form::Scalar> {
       note_borders(form_, step_, Borders::carried);
     }
     show_behind(jumps);
+  }
+
+  /// Derivatives of the speeds onto the ties behind a knot, at which a ratio may jump by zero.
+  void tie_derivatives()
+    requires has_tangents<T>
+  {
+    if (ws_.ratios.n == 0) return;
+    const int n = form_.n();
+    for (int i = 0; i < n; ++i) step_.y1()[i] = step_.y0()[i];
+    keep_ties(form_, step_, ws_.time, step_.y0());
+    for (int i = 0; i < n; ++i) step_.y0()[i].v = step_.y1()[i].v;
+    ws_.ratios.jammed = -1;
+    export_state(form_, step_.y0());
   }
 
   /// In steps both sides of an instant have a row where a signal, a torque or an acceleration jumps.
@@ -369,6 +388,7 @@ class Phase : public StepSize<typename Form::Scalar> {
   /// What happens inside a step, and where the run goes on from. `written`: rows and work are there for the case that
   /// nothing happens; true: nothing did.
   [[gnu::noinline]] bool settle_step(bool written = false) {
+    if (misses_start()) return reject_and_shrink(), false;
     const Hit hit = find_hit(taken_form(), taken_step());
     const bool is_written = written && hit.none();
     if (must_land(hit)) {
@@ -451,6 +471,18 @@ class Phase : public StepSize<typename Form::Scalar> {
     fit(taken_form(), taken_step());
     const double missed = error_until(taken_form(), taken_step(), inner);
     if (missed > most_inner_error) return error_ = missed, true;
+    linearize_end();
+    return false;
+  }
+
+  /// Whether the first step behind a jump has run over what settles within a part of it: its end is right, but not what
+  /// is read inside. docs/theory/events.md, rule 7
+  bool misses_start() {
+    if (!calls_.stiff || !Base::follows_jump() || reach_ < shortest * larger(1e-2, ws_.time)) return false;
+    fit(taken_form(), taken_step());
+    const double missed = error_inside(taken_form(), taken_step());
+    if (missed > most_missed_behind_jump) return error_ = missed, true;
+    if constexpr (has_tangents<T>) varied_.forget_factor();
     linearize_end();
     return false;
   }

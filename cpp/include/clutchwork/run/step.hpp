@@ -6,6 +6,7 @@
 #include <clutchwork/motion/dynamics.hpp>
 #include <clutchwork/motion/form.hpp>
 #include <clutchwork/run/integrator/memory.hpp>
+#include <clutchwork/run/integrator/rodas5p.hpp>
 #include <clutchwork/run/power.hpp>
 #include <clutchwork/workspace.hpp>
 
@@ -168,6 +169,24 @@ double error_until(Form& form, Step<Form>& step, double s) {
       if (ws.rows.mass.first[i] == ws.rows.mass.first[i + 1]) miss[i] = T(0);
     }
   }
+  return error_norm(form, miss, step.y0(), y);
+}
+
+/// Error of the interpolant in the middle of a step by an implicit method, in units of the tolerance: what it misses of
+/// the equations of motion there, of which a fast motion settles at once. The Jacobian is that of either end.
+/// docs/theory/events.md, rule 7
+template <class Form, class T = typename Form::Scalar>
+double error_inside(Form& form, Step<Form>& step) {
+  T *y = step.point(), *slope = step.slope(), *miss = step.u();
+  const int nz = form.nz(), n = form.n();
+  if (!Rodas5P::factor(form, 1 / (Rodas5P::gamma * step.h))) return 0;
+  interpolate(form, step, 0.5, y);
+  evaluate(form, step.t + 0.5 * step.h, y, miss);
+  interpolate_slope(form, step, 0.5, slope);
+  for (int i = 0; i < n; ++i) slope[i] = -slope[i];
+  form.add_mass_times(T(1), slope, miss);
+  for (int i = nz; i < n; ++i) miss[i] += slope[i];
+  Rodas5P::solve(form, miss);
   return error_norm(form, miss, step.y0(), y);
 }
 

@@ -37,6 +37,9 @@ struct StepSize {
 
   StepSize(Workspace<T>& ws, double t_end, Sink& sink) : ws_(ws), sink_(sink), t_end_(t_end) {}
 
+  /// Whether the next step is the first one behind a jump.
+  bool follows_jump() const { return ws_.guard.jumped_at == ws_.time; }
+
   /// Numbers of one row of the step.
   T* row(int number) const { return rows_ + number * width_; }
 

@@ -56,6 +56,7 @@ struct Guards {
   int strained = 0;      ///< explicit steps in a row at the limit of their stability
   std::int64_t reversals_since = 0;
   double balanced_at = -infinity;  ///< [s] where speeds without inertia have jumped last, with a decision
+  double jumped_at = -infinity;    ///< [s] where something has jumped last: the next step begins with what settles fast
   bool is_placed = false;          ///< the state is given from outside: the headings of the phase stay
   double zero = 0;                 ///< slip that counts as zero in the steps, by the speeds at the last event
 

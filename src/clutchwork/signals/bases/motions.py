@@ -12,7 +12,7 @@ from clutchwork.signals.bases.waveform import Filtered, Wave, moved, piece_value
 
 # Bessel filter of second order whose amplitude is 1/sqrt(2) at the cutoff
 AF, BF = 1.3617, 0.6180
-# jump of a position that is round-off, over its size
+# jump of a position that is round-off, over the size of all
 ROUND_OFF = 1e-9
 
 
@@ -26,10 +26,11 @@ class SignalError(ValueError):
 
 def derivative(signal: Signal, unit: str) -> Filtered:
     """Time derivative of a signal that does not jump."""
-    made, before = list[Segment](), None
-    for piece, end in _from_start(signal):
+    made, before, pieces = list[Segment](), None, list(_from_start(signal))
+    size = max(abs(piece_value(piece, piece.start)) for piece, _ in pieces)
+    for piece, end in pieces:
         here = piece_value(piece, piece.start)
-        if before is not None and abs(here - before) > ROUND_OFF * max(abs(here), abs(before)):
+        if before is not None and abs(here - before) > ROUND_OFF * size:
             message = f"jumps by {here - before:g} {unit} at {piece.start:g} s, which takes an infinite speed"
             raise SignalError(message, "give it a ramp there, or a `cutoff`")
         made.append(_slope(piece))
