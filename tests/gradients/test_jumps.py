@@ -1,0 +1,103 @@
+"""Derivatives behind signals that jump, that repeat, or that jump by nothing."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+import pytest
+from scipy.integrate import quad
+from scipy.linalg import expm
+
+import clutchwork as cw
+
+TIGHT: dict[str, Any] = {"rtol": 1e-10, "atol": 1e-12}
+
+
+def central(f: cw.Differentiable, step: float) -> np.ndarray:
+    """Differences of fourth order of all values by the only number."""
+    x = f.x0
+    found: np.ndarray = (f(x - 2 * step) - 8 * f(x - step) + 8 * f(x + step) - f(x + 2 * step)) / (12 * step)
+    return found
+
+
+@pytest.mark.parametrize("t_end", [0.15, 0.45])
+def test_a_load_that_is_zero_between_pulses(t_end: float) -> None:
+    """A little more presses before the first pulse and between pulses, a little less does not."""
+    d = cw.Driveline("pulses")
+    a = d.shaft("a", inertia=0.5, speed=40.0)
+    load = cw.Pulse(height=20.0, period=0.2, width=0.05, start=0.1)
+    d.add(cw.Brake("brake", shaft=a, friction=cw.Coulomb(static=0.3, kinetic=0.3), gain=1.0, normal_force=load))
+    pulses = np.clip(t_end - np.array([0.1, 0.3]), 0.0, 0.05).sum()
+    # decelerated by friction over inertia: all the time, or in pulses alone
+    for side, pressed in (("right", t_end), ("left", pulses)):
+        f = cw.differentiable(d, t_end, of="a.speed", by="brake.normal_force.offset", side=side, **TIGHT)
+        assert f.gradient().matrix[0, 0] == pytest.approx(-0.3 * pressed / 0.5, rel=1e-7)
+    with pytest.raises(cw.NoGradient, match=r"normal_force is 0 from 0 to 0\.1 s"):
+        cw.differentiable(d, t_end, of="a.speed", by="brake.normal_force.offset", **TIGHT).gradient()
+
+
+@pytest.mark.parametrize("height", [0.0, 0.1])
+@pytest.mark.parametrize("inertia", [0.01, 0.0])
+def test_a_ratio_that_jumps_by_nothing(height: float, inertia: float) -> None:
+    """Speeds follow the ratio that another number would give, and so does what they wind up."""
+    d = cw.Driveline("ratio")
+    a, b = d.shaft("a", inertia=0.0177, speed=3.0), d.shaft("b", inertia=inertia)
+    d.add(cw.Spring("spring", base=a, follower=b, stiffness=377.5, initial_twist=0.01))
+    ratio = cw.Step(height=height, start=0.01, offset=1.013)
+    d.add(cw.VariableGear("gear", input=b, output=a, ratio=ratio))
+    f = cw.differentiable(d, 0.03, of=["a.speed", "spring.torque"], by="gear.ratio.height", **TIGHT)
+    # differences of a tight run at a step of 1e-4 have about eight digits
+    np.testing.assert_allclose(f.gradient().matrix[:, 0], central(f, 1e-4), rtol=1e-6)
+
+
+def test_squared_jerk_of_a_prescribed_motion_by_the_instant_at_which_it_begins() -> None:
+    """The motion is exact in steps of any length, and its jerk is not that of polynomials over such steps.
+
+    A position that jumps passes a Bessel filter; later by one second the integral lacks the last square of the jerk.
+    """
+    height, start, end, rate = 0.0673, 0.04, 0.0542, 2 * np.pi * 31.9
+    d = cw.Driveline("filtered")
+    a = d.shaft("a", inertia=1.0)
+    position = cw.Step(height=height, start=start)
+    d.add(cw.PrescribedPosition("motion", shaft=a, position=position, cutoff=31.9))
+    slope = np.array([[0.0, 1.0], [-(rate**2) / 0.618, -1.3617 * rate / 0.618]])
+
+    def jerk(time: float) -> float:
+        return float((slope @ slope @ expm(slope * time) @ [-height, 0.0])[1])
+
+    found = cw.differentiable(d, end, of=cw.squared_jerk("a"), by="motion.position.start", **TIGHT).gradient()
+    whole = quad(lambda time: jerk(time) ** 2, 0.0, end - start, epsrel=1e-10)[0]
+    assert found.values[0] == pytest.approx(whole, rel=1e-5)
+    # the first jerk is 30 times the last one, so its square is lost to a part in a thousand of a polynomial
+    assert found.matrix[0, 0] == pytest.approx(-(jerk(end - start) ** 2), rel=1e-3)
+
+
+def test_a_peak_among_steps_that_grow_behind_a_jump() -> None:
+    """Where the derivative of a torque changes fast, the instant of its peak must be known to a share of a step."""
+    # seed 110182
+    d = cw.Driveline("tyre")
+    a, m = d.shaft("a", inertia=0.127), d.mass("m", mass=60.0)
+    sun, ring = d.shaft("sun", inertia=0.522), d.shaft("ring", inertia=0.00559)
+    load = cw.Ramp(height=6156.0, duration=0.0355266, start=0.07856, offset=-4657.0)
+    d.add(cw.Torque("drive", shaft=m, torque=-0.7828))
+    d.add(cw.DoublePlanetary("planets", sun=sun, ring=ring, carrier=a, ratio=1.41))
+    lower = cw.Sine(amplitude=32.06, frequency=10.62, offset=163.4, damping=0.532)
+    d.add(cw.FundamentalClutch("held", base=d.housing, follower=a, kinetic=0.01359, upper=168.0, lower=lower))
+    d.add(cw.PrescribedAcceleration("motion", shaft=ring, acceleration=-13.4))
+    d.add(cw.Tyre("tyre", shaft=a, mass=m, radius=0.307, load=load, E=-0.182, low_speed_damping=4560.0))
+    f = cw.differentiable(d, 0.2, of=cw.peak("held.torque"), by="tyre.load.duration", **TIGHT)
+    scale = f.gradient().values[0] / 0.0355266
+    np.testing.assert_allclose(f.gradient().matrix[0], central(f, 1e-6), atol=1e-6 * scale)
+
+
+def test_a_jerk_within_a_nanosecond_has_no_derivatives() -> None:
+    """Runs with derivatives do not look into such short steps, and say so."""
+    d = cw.Driveline("nanosecond")
+    a = d.shaft("a", inertia=1e-9, speed=1e-3)
+    d.add(cw.Damper("damper", base=d.housing, follower=a, damping=100.0))
+    of = [cw.squared_jerk("a"), "a.speed"]
+    found = cw.differentiable(d, 0.1, of=of, by="damper.damping", **TIGHT).gradient()
+    assert np.isnan(found.matrix[0, 0])
+    assert np.isfinite(found.matrix[1, 0])
+    assert "settles within a nanosecond" in found.problems[0]
