@@ -101,3 +101,19 @@ def test_a_jerk_within_a_nanosecond_has_no_derivatives() -> None:
     assert np.isnan(found.matrix[0, 0])
     assert np.isfinite(found.matrix[1, 0])
     assert "settles within a nanosecond" in found.problems[0]
+
+
+def test_two_borders_of_an_element_that_are_passed_at_one_instant() -> None:
+    """The throttle of the idle control leaves its end and that of the table of torques: each by its own slope."""
+    # seed 120008: between both the least of the guards has its top, whose slope is zero
+    d = cw.Driveline("engine")
+    a = d.shaft("a", inertia=0.282, speed=20.0)
+    torques = {"full_load": [(0.0, 398.0), (138.0, 285.0)], "motoring": [(0.0, -53.6), (138.0, -30.2)]}
+    idle = {"idle_speed": 49.1, "idle_gain": 0.0816, "idle_integral": 0.0268}
+    # a throttle beyond the table, from which the idle control takes over at its end
+    throttle = cw.Step(height=-1.5, start=0.005, offset=2.4)
+    d.add(cw.Engine("engine", shaft=a, throttle=throttle, **torques, **idle))
+    of = ["a.speed", "engine.work"]
+    f = cw.differentiable(d, 0.1, of=of, by="engine.full_load.values[1]", **TIGHT)
+    assert abs(f(f.x0)[0] - 20.0) > 10.0
+    np.testing.assert_allclose(f.gradient().matrix[:, 0], central(f, 0.1), rtol=1e-6)

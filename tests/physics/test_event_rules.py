@@ -392,3 +392,38 @@ def test_what_settles_at_once_behind_a_jump_is_seen_in_all_rows() -> None:
     np.testing.assert_allclose(run["a.speed"][settled], slip[settled], rtol=0.01)
     # 1 N m on 0.01 kg m2 is 100 rad/s2
     assert np.abs(run["a.acceleration"][settled]).max() < 1.0
+
+
+@pytest.mark.parametrize("weaker", ["first", "second"])
+def test_brakes_that_are_declared_locked_but_cannot_both_be(weaker: str) -> None:
+    """Between a prescribed speed and the housing no impulse brings both to rest: the weaker one slips."""
+    d = cw.Driveline("contradiction")
+    a, b = d.shaft("a"), d.shaft("b", inertia=1.0)
+    d.add(cw.PrescribedSpeed("p", shaft=a, speed=-55.5))
+    loads = (1.0, 5.0) if weaker == "first" else (5.0, 1.0)
+    d.add(cw.Clutch("first", base=a, follower=b, friction=ONE, gain=1.0, normal_force=loads[0], locked=True))
+    d.add(brake("second", b, loads[1], locked=True))
+    run = d.simulate(0.1, **TIGHT)
+    # 1 N m over the prescribed speed, and nothing else
+    assert run.energy.heat[weaker] == pytest.approx(1.0 * 55.5 * 0.1, rel=1e-9)
+    assert abs(run.energy.residual) < 1e-9
+    held = {"first": 0.0, "second": -55.5}[weaker]
+    np.testing.assert_allclose(run["b.speed"], held, atol=1e-9)
+
+
+def test_a_ratio_that_leaves_zero_against_a_motion_jams() -> None:
+    """At zero it leaves the output free, from then on it would have to stop it at once."""
+    d = cw.Driveline("leaves zero")
+    a = d.shaft("a", inertia=0.5, speed=10.0)
+    ratio = cw.Ramp(height=0.3, duration=0.1, start=0.2)
+    d.add(cw.VariableGear("gear", input=d.housing, output=a, ratio=ratio))
+    d.add(brake("b", a, 0.5))
+    # another one lets go at that instant, so that all is decided there
+    other = d.shaft("other", inertia=1.0)
+    d.add(brake("lets go", other, 1.0, locked=True))
+    d.add(cw.Torque("pull", shaft=other, torque=cw.Step(height=3.0, start=0.2)))
+    with pytest.warns(cw.StoppedEarly, match=r"stopped at 0\.2 s: .* break the ratio of a transmission at 'gear'"):
+        run = d.simulate(0.4, **TIGHT)
+    assert run.status == "jammed"
+    assert run["a.speed"][-1] == pytest.approx(10.0 - 0.5 * 0.2 / 0.5, rel=1e-9)
+    assert abs(run.energy.residual) < 1e-9

@@ -28,6 +28,10 @@ JAMS = {
     "freewheel": ("prescribed speeds turn a freewheel backward", ""),
     "turned": ("a transmission whose ratio leaves it no other way turns a freewheel backward", ""),
     "stop": ("prescribed speeds go beyond a stop", ""),
+    "held stop": (
+        "no torque keeps the shafts beside a stop within it",
+        "give the shafts without inertia beside it some, and gears that lock themselves more efficiency",
+    ),
     "ratio": ("prescribed or initial speeds break the ratio of a transmission", ""),
     "light": (
         "at its ratio nothing determines the speed of the shaft without inertia beside it",
@@ -93,7 +97,10 @@ def explain(status: int, component: Any, time: float, value: float, quantity: st
 def jam_of(system: System, component: Any, index: int) -> str:
     """Which of `JAMS` it is where a component with a number jams."""
     if component.role is Role.CONTACT:
-        return "stop" if is_stop(component) else "freewheel" if len(system.prescribed_input) else "turned"
+        prescribed = len(system.prescribed_input) > 0
+        if is_stop(component):
+            return "stop" if prescribed else "held stop"
+        return "freewheel" if prescribed else "turned"
     places = np.flatnonzero(system.transmission_element == index)
     return "light" if any(system.transmission_speed[places] >= 0) else "ratio"
 

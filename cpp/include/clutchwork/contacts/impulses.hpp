@@ -105,10 +105,27 @@ int impulse_contacts(const Workspace<T>& ws, Stops&& stops, int* list) {
   return n;
 }
 
-/// The impulses that change the kinetic energy least: some contacts come to rest, no freewheel turns backward; those
-/// that had to stop lock. Slips up to `still` need none. docs/theory/contacts.md (15)
+/// Of the contacts that impulses should have brought to rest but do not, as prescribed speeds and others that come to
+/// rest keep them slipping, the one that holds least; -1: none.
 template <class T, class Stops>
-bool least_impulses(Workspace<T>& ws, double still, Stops&& stops) {
+int kept_slipping(const Workspace<T>& ws, const BoundedProblem<T>& p, const int* list, Stops&& stops) {
+  const double most = 1e3 * slip_tolerance(ws);
+  int found = -1;
+  double least = infinity;
+  for (int a = 0; a < p.n; ++a) {
+    const int c = list[a];
+    if (!stops(c) || !(abs(value(p.slope[a])) > most)) continue;
+    const double holds = larger(value(capacity_of(ws, c, forward)), value(capacity_of(ws, c, backward)));
+    if (found < 0 || holds < least) found = c, least = holds;
+  }
+  return found;
+}
+
+/// The impulses that change the kinetic energy least: some contacts come to rest, no freewheel turns backward; those
+/// that had to stop lock. Slips up to `still` need none. `kept`: one that cannot come to rest, without an impulse then.
+/// docs/theory/contacts.md (15)
+template <class T, class Stops>
+bool least_impulses(Workspace<T>& ws, double still, Stops&& stops, int* kept = nullptr) {
   const int ne = int(ws.sys.elements);
   const double tolerance = slip_tolerance(ws);
   int* list = ws.decision.list;
@@ -131,6 +148,7 @@ bool least_impulses(Workspace<T>& ws, double still, Stops&& stops) {
   }
   capacity_weights(p, capacity);
   if (!solve(p)) return false;
+  if (kept != nullptr && (*kept = kept_slipping(ws, p, list, stops)) >= 0) return true;
   apply_impulses(ws, p, list);
   for (int a = 0; a < n; ++a) {
     // a freewheel that an impulse has closed is locked, one that it has left behind overruns
@@ -140,10 +158,19 @@ bool least_impulses(Workspace<T>& ws, double still, Stops&& stops) {
   return true;
 }
 
-/// Impulses at a decision: contacts declared locked, at the start, and freewheels that would run backward.
+/// Impulses at a decision: contacts declared locked, at the start, and freewheels that would run backward. Of contacts
+/// that cannot all be locked the weakest slip. docs/theory/contacts.md, rule 8
 template <class T>
 bool settle_impulses(Workspace<T>& ws, bool at_start) {
-  return least_impulses(ws, slip_tolerance(ws), [&](int c) { return at_start && ws.sys.contact_initial[c] == 1; });
+  int* slips = ws.contact.impulse;
+  for (int c = 0; c < ws.sys.contacts; ++c) slips[c] = 0;
+  auto stops = [&](int c) { return at_start && ws.sys.contact_initial[c] == 1 && slips[c] == 0; };
+  for (;;) {
+    int kept = -1;
+    if (!least_impulses(ws, slip_tolerance(ws), stops, at_start ? &kept : nullptr)) return false;
+    if (kept < 0) return true;
+    slips[kept] = 1;
+  }
 }
 
 /// Whether a contact has locked while it still slips within its own tolerance.

@@ -337,6 +337,18 @@ T ratio_to_decide(Workspace<T>& ws, int a) {
   return value(ratio.v) == 0 && is_given(ws, a) ? T(1e-9) * ratio.d[0] : ratio.v;
 }
 
+/// A transmission whose ratio leaves zero beside what is given, against a motion that it would have to stop by a jump;
+/// -1: none. docs/theory/varying-ratios.md (6)
+template <class T>
+int leaves_zero_against(Workspace<T>& ws) {
+  for (int a = 0; a < ws.ratios.n; ++a) {
+    const Dual<T, 1> ratio = ratio_now(ws, a);
+    if (value(ratio.v) != 0 || value(ratio.d[0]) == 0 || !is_given(ws, a)) continue;
+    if (abs(value(rate_of(ws, first_of(ws, a) + 1))) > 1e3 * slip_tolerance(ws)) return a;
+  }
+  return -1;
+}
+
 /// While it lives, directions and mobility are what the transmissions leave of them.
 template <class T>
 class BesideRatios {

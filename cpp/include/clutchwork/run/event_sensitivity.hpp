@@ -242,19 +242,25 @@ double guard_rate(Form& form, Step<Form>& step, const Hit& hit, const T* velocit
   T* probe = step.k(1);
   for (double share = 1; share > 0.5 * closest; share *= 0.1) {
     const double reach = 0.01 * share * larger(form.ws.moved.span, 1e-12);
-    bool own = true;
+    bool own = true, ahead = true;
     auto plain = [&](double along) {
       for (int i = 0; i < form.n(); ++i) probe[i] = T(value(step.y0()[i]) + along * reach * value(velocity[i]));
       int who = hit.who;
       form.ws.in.time = -infinity;
       const double found = value(G::at(form, step, hit, form.ws.time + along * reach, probe, who));
-      own = own && who == hit.who;
+      own = own && who == hit.who, ahead = ahead && (along < 0 || who == hit.who);
       return found;
     };
     // what is smooth has nearly the same slope over twice the reach
-    const double near = (plain(1) - plain(-1)) / (2 * reach), far = (plain(2) - plain(-2)) / (4 * reach);
+    double near = (plain(1) - plain(-1)) / (2 * reach), far = (plain(2) - plain(-2)) / (4 * reach);
+    double found = (4 * near - far) / 3;
+    if (!own && ahead) {
+      // before it another guard of the same element was less, as that which has just been passed
+      const double here = plain(0);
+      near = (plain(1) - here) / reach, far = (plain(2) - here) / (2 * reach), found = 2 * near - far, own = true;
+    }
     const double apart = own ? abs(near - far) : larger(abs(near - far), 1e300);
-    if (apart < least || share == 1) rate = (4 * near - far) / 3, least = apart;
+    if (apart < least || share == 1) rate = found, least = apart;
     if (own && apart <= straight * larger(abs(near), abs(far))) break;
   }
   return rate;
