@@ -96,8 +96,11 @@ def _limits(steps: Steps, acceleration: Array) -> tuple[Array, Array]:
 
 def _lost(steps: Steps, acceleration: Array) -> Array:
     """By how much both limits of the jerk at an instant may differ because polynomials have no more coefficients."""
-    last = MISSED * np.abs(np.einsum("ni,ni->n", steps.basis[:, PARTS], acceleration)) / steps.length
-    found: Array = last[1:] + last[:-1]
+    last = np.einsum("ni,ni->n", steps.basis[:, PARTS], acceleration) / steps.length
+    # where the last one passes zero it says nothing: by how much it changes does
+    cubes = steps.length**3
+    change = np.abs(np.diff(last / cubes)) * np.minimum(cubes[1:], cubes[:-1])
+    found: Array = MISSED * (np.abs(last[1:]) + np.abs(last[:-1]) + 2.0 * change)
     return found
 
 
