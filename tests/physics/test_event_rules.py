@@ -427,3 +427,42 @@ def test_a_ratio_that_leaves_zero_against_a_motion_jams() -> None:
     assert run.status == "jammed"
     assert run["a.speed"][-1] == pytest.approx(10.0 - 0.5 * 0.2 / 0.5, rel=1e-9)
     assert abs(run.energy.residual) < 1e-9
+
+
+@pytest.mark.parametrize("inertia", [0.01, 0.3, 0.37, 1.0, 20.0])
+def test_a_clutch_beside_brakes_that_contradict_each_other_stays_locked(inertia: float) -> None:
+    """Impulses without bound leave round-off to contacts that contradict nothing, however little they hold."""
+    d = cw.Driveline("third")
+    a, b, c = d.shaft("a"), d.shaft("b", inertia=0.37), d.shaft("c", inertia=inertia)
+    d.add(cw.PrescribedSpeed("p", shaft=a, speed=-55.5))
+    d.add(cw.Clutch("first", base=a, follower=b, friction=ONE, gain=1.0, normal_force=5.0, locked=True))
+    d.add(brake("second", b, 1.0, locked=True))
+    d.add(cw.Clutch("third", base=b, follower=c, friction=ONE, gain=1.0, normal_force=0.1, locked=True))
+    run = d.simulate(0.1, **TIGHT)
+    np.testing.assert_allclose(run["c.speed"], -55.5, rtol=1e-9)
+    assert run.energy.heat["third"] == pytest.approx(0.0, abs=1e-8)
+
+
+@pytest.mark.parametrize("ratio", [cw.Ramp(height=0.3, duration=0.1), cw.Sine(amplitude=0.3, frequency=2.0)])
+def test_a_ratio_that_begins_to_leave_zero_against_a_motion_jams(ratio: cw.SignalLike) -> None:
+    d = cw.Driveline("begins at zero")
+    d.add(cw.VariableGear("gear", input=d.housing, output=d.shaft("a", inertia=0.5, speed=10.0), ratio=ratio))
+    with pytest.warns(cw.StoppedEarly, match="break the ratio of a transmission at 'gear'"):
+        assert d.simulate(0.4).status == "jammed"
+
+
+@pytest.mark.parametrize("beside", [False, True])
+def test_a_ratio_that_leaves_zero_with_the_speed_that_is_prescribed(beside: bool) -> None:
+    """Ten times the speed, at zero and from there on: nothing has to change, whatever else is decided then."""
+    d = cw.Driveline("both leave zero")
+    a, b = d.shaft("a"), d.shaft("b", inertia=0.5, speed=10.0)
+    d.add(cw.PrescribedSpeed("p", shaft=a, speed=cw.Ramp(height=3.0, duration=0.1, start=0.2)))
+    ratio = cw.Ramp(height=0.3, duration=0.1, start=0.2)
+    d.add(cw.VariableGear("gear", input=a, output=b, ratio=ratio))
+    if beside:
+        other = d.shaft("other", inertia=1.0)
+        d.add(brake("lets go", other, 1.0, locked=True))
+        d.add(cw.Torque("pull", shaft=other, torque=cw.Step(height=3.0, start=0.2)))
+    run = d.simulate(0.4)
+    assert run.status == "done"
+    np.testing.assert_allclose(run["b.speed"], 10.0, rtol=1e-6)

@@ -227,3 +227,18 @@ def test_what_slips_beside_a_speed_that_bends_locks_where_its_slip_vanishes():
     assert len(loose.events) == len(tight.events) > 10
     # round-off of speeds of 10 rad/s
     np.testing.assert_allclose(loose["w.speed"], tight["w.speed"], rtol=0.0, atol=1e-12)
+
+
+def test_a_position_that_jumps_by_little_is_refused_and_round_off_is_none() -> None:
+    """What a jump is compared with are the terms of both pieces there, not the largest position of all."""
+    d = cw.Driveline("jump")
+    a = d.shaft("a", inertia=1.0)
+    large = cw.Table([(0.0, 0.0), (0.1, 0.0), (0.1, 4e-4), (0.2, 4e-4), (0.4, 1e6), (1.0, 1e6)])
+    d.add(cw.PrescribedPosition("p", shaft=a, position=large))
+    with pytest.raises(cw.ModelError, match=r"position jumps by 0\.0004 rad at 0\.1 s"):
+        d.assemble()
+    # -1e-4 + (1e-4/0.0058) 0.0058 is 1e-20
+    round_off = cw.Table([(0.0, -1e-4), (0.0332, -1e-4), (0.039, 0.0), (0.06228, -0.01038)])
+    d = cw.Driveline("round-off")
+    d.add(cw.PrescribedPosition("p", shaft=d.shaft("a", inertia=1.0), position=round_off))
+    assert d.simulate(0.1).status == "done"

@@ -35,7 +35,7 @@ def unpressed(
     for number in pressing(system) if slopes.touch(first, size) else ():
         start, count = (int(system.arrays[f"input_{what}"][number]) for what in ("first", "count"))
         pieces = words[first + PIECE * start : first + PIECE * (start + count)].reshape(count, PIECE)
-        period = float(chart.assembled.system.arrays["input_period"][number])
+        period = float(words[chart.words_in("input_period")[0] + number])
         begins = words[time + start : time + start + count]
         bounds = np.r_[begins, begins[0] + period if period > 0.0 else np.inf]
         for piece in np.flatnonzero(~pieces[:, :4].any(axis=1) & ~pieces[:, [4, 8]].any(axis=1)).tolist():
@@ -46,8 +46,7 @@ def unpressed(
                 free = ", ".join(names[column] for column in np.flatnonzero(moved).tolist())
                 what = f"{system.inputs[number].name} is 0 from {since:g} to {until:g} s"
                 yield since, f"{what}, where a little more of {free} presses and a little less does not", moved
-        knots = bounds if period <= 0.0 else bounds + period * np.maximum(np.ceil((begin - bounds) / period), 0.0)
-        yield from _at_knots(system, number, pieces, knots, slopes, first + PIECE * start, (begin, end))
+        yield from _at_knots(system, number, pieces, bounds, slopes, first + PIECE * start, (begin, end))
 
 
 def _first_time(bounds: Array, piece: int, period: float, begin: float) -> tuple[float, float]:
@@ -69,8 +68,8 @@ def _at_knots(
     Parameters: first, the word of the first piece; run, its begin and end [s].
     """
     acts: Mask = np.asarray(pieces[:, :4].any(axis=1) | pieces[:, [4, 8]].any(axis=1))
-    # a periodic signal comes from its last piece; a run may begin at one, where it does not matter what was before
-    goes_on = np.append(acts[-1] & np.isfinite(bounds[-1]), acts[:-1]) | (bounds[:-1] == run[0])
+    # a run may begin at one, where it does not matter what was before
+    goes_on = np.append(False, acts[:-1]) | (bounds[:-1] == run[0])
     waves = pieces[:, [4, 8]] * np.sin(pieces[:, [6, 10]])
     nothing = ROUND_OFF * np.abs(pieces[:, [0, 4, 8]]).sum(axis=1)
     for piece in np.flatnonzero((np.abs(pieces[:, 0] + waves.sum(axis=1)) <= nothing) & acts & goes_on).tolist():

@@ -22,7 +22,7 @@ ALIKE = 1e-6
 # what is not known of a derivative may be so much of the value, for a number that changes by all of itself
 UNKNOWN = 1e-6
 # share of a squared jerk in steps that runs with derivatives do not look into, from which on it has none
-UNSEEN = 1e-3
+UNSEEN = 1e-5
 # a number that passes zero has at least this size, of the largest one of its kind
 PASSES = 1e-3
 # values below this are round-off
@@ -85,7 +85,7 @@ def _nothing(name: str, one: Measure, t_end: float) -> str:
     if not one.changes:
         return f"{name} does not happen before {t_end:g} s; take one that does, or a later end time"
     if one.unseen > UNSEEN:
-        what = f"{min(one.unseen, 1.0):.2g} of {name} is from motion that settles within a nanosecond"
+        what = f"{min(one.unseen, 1.0):.2%} of {name} is from motion that settles within a few nanoseconds"
         return f"{what}, which has no derivatives; give what is so stiff more inertia, or start it where it has settled"
     return ""
 

@@ -15,7 +15,7 @@ from clutchwork.declare.layout import DONE
 from clutchwork.gradients import extremes
 from clutchwork.gradients.measures import number_of
 from clutchwork.gradients.refined import Seen, WithinSteps, refined
-from clutchwork.gradients.resolved import resolved
+from clutchwork.gradients.resolved import around_tops, resolved
 from clutchwork.gradients.steps import NO_STEPS, Steps
 from clutchwork.results.forms import all_reads
 from clutchwork.sweeps.batch import CoreOutputs
@@ -87,17 +87,13 @@ class PlainRuns:
         whole = split = steps.covering()
         if run.status == DONE:
             places, rows_at = [columns.index(one) for one in seen], partial(self.rows_at, system, columns)
-            split, rows = self.refined(whole, run.rows, own[0], places, rows_at)
-            split = self._resolved(split, rows, own[0])
+            known, rows = _rows_of(whole, steps.long(), run.rows, rows_at)
+            split, rows = self.refined(known, rows, own[0], places, rows_at)
+            accelerations = [own[0][one.signal](rows) for one in ones if isinstance(one, SquaredJerk)]
+            split = resolved(split, [np.asarray(one, dtype=float)[split.rows] for one in accelerations])
+            split = whole if split is known else split
         jerks = {one.signal: _jerk(run, steps, own[0][one.signal]) for one in ones if isinstance(one, SquaredJerk)}
         return run, whole.inside() if split is whole else split, jerks
-
-    def _resolved(self, steps: Steps, rows: Array, forms: Mapping[str, Form]) -> Steps:
-        """The steps short enough for the polynomials of what is asked for within them."""
-        ones = [one for one in self.wanted.outputs.values() if isinstance(one, IN_STEPS)]
-        known = [(one, np.asarray(forms[one.signal](rows), dtype=float)[steps.rows]) for one in ones]
-        jerks = [values for one, values in known if isinstance(one, SquaredJerk)]
-        return resolved(steps, jerks, [(one, values) for one, values in known if isinstance(one, Extreme)])
 
     def _call(self, systems: Sequence[bytes], columns: Sequence[int], parts: int, instants: Array | None = None) -> Any:
         count = len(systems)
@@ -145,25 +141,29 @@ class PlainRuns:
         seen: Sequence[int],
         rows_at: Callable[[Array], Array],
     ) -> tuple[Steps, Array]:
-        """Steps and their rows, split where signals of extremes bend or jump inside of them.
+        """Steps and their rows, split where signals of extremes bend or jump inside of them, and around their tops.
 
         Parameters: seen, where in a row the columns of `inside` are; rows_at, rows of the same run at any instants.
         """
-        inside, ones = self.inside, [one for one in self.wanted.outputs.values() if isinstance(one, Extreme)]
-        if not ones or inside is None or not len(steps):
+        ones = [one for one in self.wanted.outputs.values() if isinstance(one, Extreme)]
+        if not ones or not len(steps):
             return steps, rows
 
         def on(made: Steps) -> tuple[Steps, Array]:
             grid = np.unique(made.times)
             return made.on(grid), rows_at(grid)
 
-        def values(made: Steps) -> Seen:
-            placed, known = (steps, rows) if made is steps else on(made)
-            found = [np.asarray(forms[one.signal](known), dtype=float)[placed.rows] for one in ones]
-            return inside.seen(ones, found, known[:, seen], placed.rows)
+        def values(made: Steps, known: Array) -> list[Array]:
+            return [np.asarray(forms[one.signal](known), dtype=float)[made.rows] for one in ones]
 
-        split = refined(steps, ones, values)
-        return (steps, rows) if split is None else on(split)
+        def at_bends(inside: WithinSteps, made: Steps) -> Seen:
+            placed, known = (steps, rows) if made is steps else on(made)
+            return inside.seen(ones, values(placed, known), known[:, seen], placed.rows)
+
+        split = None if self.inside is None else refined(steps, ones, partial(at_bends, self.inside))
+        found = (steps, rows) if split is None else on(split)
+        made = around_tops(found[0], list(zip(ones, values(*found), strict=True)))
+        return found if made is found[0] else on(made)
 
     def _of(
         self, run: Run, forms: Mapping[str, Form], seen: Sequence[int], rows_at: Callable[[Array], Array]
@@ -205,6 +205,15 @@ def over_columns(
     columns = sorted({*all_reads(form for some in forms for form in some.values()), *more})
     places = {column: place for place, column in enumerate(columns)}
     return columns, [{name: form.over(places) for name, form in some.items()} for some in forms]
+
+
+def _rows_of(whole: Steps, own: Steps, rows: Array, rows_at: Callable[[Array], Array]) -> tuple[Steps, Array]:
+    """Steps with their rows; those that cover short ones beside them have others than their own."""
+    if np.array_equal(whole.length, own.length):
+        return whole, rows
+    made = whole.inside()
+    grid = np.unique(made.times)
+    return made.on(grid), rows_at(grid)
 
 
 def _jerk(run: Run, steps: Steps, form: Form) -> float:

@@ -1,23 +1,23 @@
-"""Steps that are too long for the polynomials through their rows, so that they are split: docs/theory/gradients.md (19).
+"""Steps that are too long for the polynomials through their rows, so that they are split: docs/theory/gradients.md.
 
 A prescribed motion is exact in steps of any length, and behind a jump signals of stiff parts bend sharply within a few.
 """
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Mapping, Sequence
+from itertools import pairwise
 
 import numpy as np
 from numpy.typing import NDArray
 
 from clutchwork.gradients.extremes import candidates
-from clutchwork.gradients.refined import split
+from clutchwork.gradients.refined import SHORTEST_TIME, split
 from clutchwork.gradients.steps import Steps
 from clutchwork.sweeps.outputs import Extreme
 from clutchwork.sweeps.parts import PARTS
 
 Array = NDArray[np.float64]
-Cuts = Iterator[tuple[int, set[float]]]
 
 # the last coefficient of the slope of an acceleration, of the largest slope in the run, from which on a step is split
 BENT = 1e-3
@@ -25,29 +25,40 @@ BENT = 1e-3
 SHARP, AROUND = 1e-7, 1 / 16
 
 
-def resolved(steps: Steps, accelerations: Sequence[Array], extremes: Sequence[tuple[Extreme, Array]]) -> Steps:
-    """The steps split where polynomials miss slopes of accelerations, or the instants of extremes.
+def resolved(steps: Steps, accelerations: Sequence[Array]) -> Steps:
+    """The steps split where polynomials miss slopes of accelerations.
+
+    Parameters: values in the rows of each step, a line for each step.
+    """
+    rough = np.zeros(len(steps), dtype=bool)
+    for values in accelerations:
+        coefficients = np.abs(np.einsum("nki,ni->nk", steps.basis, values)) / steps.length[:, None]
+        rough |= PARTS * coefficients[:, PARTS] > BENT * coefficients[:, 1].max(initial=0.0)
+    return _split(steps, {step: set((np.arange(1, PARTS) / PARTS).tolist()) for step in np.flatnonzero(rough).tolist()})
+
+
+def around_tops(steps: Steps, extremes: Sequence[tuple[Extreme, Array]]) -> Steps:
+    """The steps with an extreme inside split so that it is in a short part, where polynomials miss its instant.
 
     Parameters: values in the rows of each step, a line for each step.
     """
     cuts = dict[int, set[float]]()
-    for step, places in (*_bent(steps, accelerations), *_around_tops(steps, extremes)):
-        cuts.setdefault(step, set()).update(places)
-    return split(steps, cuts) if cuts else steps
-
-
-def _bent(steps: Steps, accelerations: Sequence[Array]) -> Cuts:
-    """Steps whose polynomials of an acceleration miss its slope, in as many parts as they have rows."""
-    for values in accelerations:
-        coefficients = np.abs(np.einsum("nki,ni->nk", steps.basis, values)) / steps.length[:, None]
-        rough = PARTS * coefficients[:, PARTS] > BENT * coefficients[:, 1].max(initial=0.0)
-        yield from ((step, set((np.arange(1, PARTS) / PARTS).tolist())) for step in np.flatnonzero(rough).tolist())
-
-
-def _around_tops(steps: Steps, extremes: Sequence[tuple[Extreme, Array]]) -> Cuts:
-    """Steps with an extreme inside, split so that it is in a short part."""
     for one, values in extremes:
         size = float(np.abs(values).max(initial=0.0))
         for top in candidates(one, steps, values):
             if 0.0 < top.share < 1.0 and top.rough * steps.length[top.step] > SHARP * size:
-                yield top.step, {place for place in (top.share - AROUND, top.share + AROUND) if 0.0 < place < 1.0}
+                cuts.setdefault(top.step, set()).update((top.share - AROUND, top.share + AROUND))
+    return _split(steps, cuts)
+
+
+def _split(steps: Steps, cuts: Mapping[int, set[float]]) -> Steps:
+    kept = {step: found for step, places in cuts.items() if (found := _apart(steps, step, places))}
+    return split(steps, kept) if kept else steps
+
+
+def _apart(steps: Steps, step: int, places: set[float]) -> set[float]:
+    """Without places that leave parts too short for a run with derivatives to look into."""
+    least = SHORTEST_TIME * (1.0 + abs(float(steps.begin[step]))) / float(steps.length[step])
+    kept = [0.0]
+    kept += [place for place in sorted(places) if least <= place <= 1.0 - least]
+    return {there for here, there in pairwise(kept) if there - here >= least}

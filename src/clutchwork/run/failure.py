@@ -29,7 +29,7 @@ JAMS = {
     "turned": ("a transmission whose ratio leaves it no other way turns a freewheel backward", ""),
     "stop": ("prescribed speeds go beyond a stop", ""),
     "held stop": (
-        "no torque keeps the shafts beside a stop within it",
+        "nothing holds the shafts beside a stop that is closed",
         "give the shafts without inertia beside it some, and gears that lock themselves more efficiency",
     ),
     "ratio": ("prescribed or initial speeds break the ratio of a transmission", ""),

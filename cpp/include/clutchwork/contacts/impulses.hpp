@@ -109,12 +109,16 @@ int impulse_contacts(const Workspace<T>& ws, Stops&& stops, int* list) {
 /// rest keep them slipping, the one that holds least; -1: none.
 template <class T, class Stops>
 int kept_slipping(const Workspace<T>& ws, const BoundedProblem<T>& p, const int* list, Stops&& stops) {
-  const double most = 1e3 * slip_tolerance(ws);
+  double fastest = 0, least = infinity;
+  for (int a = 0; a < p.n; ++a) {
+    if (stops(list[a])) fastest = larger(fastest, abs(value(p.slope[a])));
+  }
+  if (!(fastest > 1e3 * slip_tolerance(ws))) return -1;
   int found = -1;
-  double least = infinity;
   for (int a = 0; a < p.n; ++a) {
     const int c = list[a];
-    if (!stops(c) || !(abs(value(p.slope[a])) > most)) continue;
+    // impulses without bound leave round-off to all others
+    if (!stops(c) || !(abs(value(p.slope[a])) > 0.1 * fastest)) continue;
     const double holds = larger(value(capacity_of(ws, c, forward)), value(capacity_of(ws, c, backward)));
     if (found < 0 || holds < least) found = c, least = holds;
   }
@@ -162,7 +166,7 @@ bool least_impulses(Workspace<T>& ws, double still, Stops&& stops, int* kept = n
 /// that cannot all be locked the weakest slip. docs/theory/contacts.md, rule 8
 template <class T>
 bool settle_impulses(Workspace<T>& ws, bool at_start) {
-  int* slips = ws.contact.impulse;
+  int* slips = ws.decision.before;
   for (int c = 0; c < ws.sys.contacts; ++c) slips[c] = 0;
   auto stops = [&](int c) { return at_start && ws.sys.contact_initial[c] == 1 && slips[c] == 0; };
   for (;;) {

@@ -331,20 +331,26 @@ bool is_given(const Workspace<T>& ws, int a) {
 
 /// The ratio of a transmission in a decision: one that leaves zero beside what is given is that of a nanosecond later.
 /// docs/theory/varying-ratios.md (6)
+inline constexpr double soon = 1e-9;
+template <class T>
+bool leaves_zero(Workspace<T>& ws, int a) {
+  const T* own = ws.ratios.inside ? ws.ratios.own : ws.geometry.own;
+  return value(ratio_now(ws, a).v) == 0 && follower_of(ws, a) < 0 && value(own[first_of(ws, a)]) == 0;
+}
 template <class T>
 T ratio_to_decide(Workspace<T>& ws, int a) {
   const Dual<T, 1> ratio = ratio_now(ws, a);
-  return value(ratio.v) == 0 && is_given(ws, a) ? T(1e-9) * ratio.d[0] : ratio.v;
+  return leaves_zero(ws, a) ? T(soon) * ratio.d[0] : ratio.v;
 }
 
-/// A transmission whose ratio leaves zero beside what is given, against a motion that it would have to stop by a jump;
-/// -1: none. docs/theory/varying-ratios.md (6)
+/// A transmission whose ratio leaves zero beside what is given, against a motion that it would have to change by a
+/// jump; -1: none. docs/theory/varying-ratios.md (6)
 template <class T>
 int leaves_zero_against(Workspace<T>& ws) {
   for (int a = 0; a < ws.ratios.n; ++a) {
-    const Dual<T, 1> ratio = ratio_now(ws, a);
-    if (value(ratio.v) != 0 || value(ratio.d[0]) == 0 || !is_given(ws, a)) continue;
-    if (abs(value(rate_of(ws, first_of(ws, a) + 1))) > 1e3 * slip_tolerance(ws)) return a;
+    if (!leaves_zero(ws, a)) continue;
+    const double way = abs(value(ratio_now(ws, a).d[0]));
+    if (way > 0 && abs(value(pull_of(ws, a))) > 1e3 * slip_tolerance(ws) * way) return a;
   }
   return -1;
 }
@@ -502,7 +508,10 @@ void settle_rows(Workspace<T>& ws) {
   const int nv = int(ws.sys.speeds);
   T *miss = r.wanted, *x = ws.decision.speed;
   move_followers(ws);
-  for (int a = 0; a < r.n; ++a) miss[a] = r.value[a] * rate_of(ws, first_of(ws, a) + 1) - rate_of(ws, first_of(ws, a));
+  for (int a = 0; a < r.n; ++a) {
+    const T ahead = leaves_zero(ws, a) ? T(soon) * pull_of(ws, a) : r.value[a] * rate_of(ws, first_of(ws, a) + 1);
+    miss[a] = ahead - rate_of(ws, first_of(ws, a));
+  }
   for (int i = 0; i < nv; ++i) x[i] = T(0);
   follow_rows(ws, miss, x);
   backward_solve(nv, ws.geometry.inertia, ws.geometry.factor, x);

@@ -5,6 +5,7 @@
 #include <clutchwork/lanes/step.hpp>
 #include <clutchwork/run/phase.hpp>
 #include <clutchwork/run/step_size.hpp>
+#include <clutchwork/run/stiffness.hpp>
 
 /// The phases of up to eight runs in one mode, stepped together: docs/theory/lanes.md.
 namespace clutchwork {
@@ -201,7 +202,7 @@ class Together {
     if (work || rows) write(rows);
     for (int i = 0; i < n_lanes; ++i) {
       if (!active_[i] || !counts_[i]) continue;
-      visited_[i] = alone_[i] || doubtful[i] || pace(i).follows_jump();
+      visited_[i] = alone_[i] || doubtful[i] || may_settle(i);
       bool nothing = true;
       if (visited_[i]) {
         unload(i);
@@ -212,6 +213,14 @@ class Together {
       if (nothing) take_written(i);
     }
     pass_on();
+  }
+
+  /// Whether something may settle within the step of a lane behind a jump.
+  bool may_settle(int i) {
+    StepSize<double>& one = pace(i);
+    if (!one.follows_jump()) return false;
+    get_jacobian(one.ws_, ws_, i);
+    return may_settle_within(one.ws_, one.reach_);
   }
 
   /// Whether what is wanted of any step is more than the lanes give.

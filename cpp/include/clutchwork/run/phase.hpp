@@ -43,10 +43,8 @@ class Phase : public StepSize<typename Form::Scalar> {
   static constexpr int most_landings = 4;
   // of the tolerance: cuts come on top of steps, and there may be one every few steps
   static constexpr double most_cut_error = 0.3;
-  // of a step towards rest: where inside it is checked, and how much of the tolerance an interpolant may miss there
+  // of a step towards rest: where inside it is checked; how much of the tolerance an interpolant may miss inside
   static constexpr double inner = 0.7, most_inner_error = 10;
-  // of the tolerance: how much an interpolant may miss in the first step behind a jump
-  static constexpr double most_missed_behind_jump = 10;
   // of the tolerance: an interpolant that says nothing of a slip
   static constexpr double much_missed = 1e3;
   // steps at the limit of stability, of the length over the fastest rate, before an implicit method goes on
@@ -469,20 +467,22 @@ class Phase : public StepSize<typename Form::Scalar> {
   bool misses_rest(const Hit& hit) {
     if (!calls_.stiff || !hit.none() || !nears_rest(taken_form().ws)) return false;
     fit(taken_form(), taken_step());
-    const double missed = error_until(taken_form(), taken_step(), inner);
-    if (missed > most_inner_error) return error_ = missed, true;
-    linearize_end();
-    return false;
+    return misses(error_until(taken_form(), taken_step(), inner));
   }
 
   /// Whether the first step behind a jump has run over what settles within a part of it: its end is right, but not what
   /// is read inside. docs/theory/events.md, rule 7
   bool misses_start() {
     if (!calls_.stiff || !Base::follows_jump() || reach_ < shortest * larger(1e-2, ws_.time)) return false;
+    if (!may_settle_within(taken_form().ws, reach_)) return false;
     fit(taken_form(), taken_step());
-    const double missed = error_inside(taken_form(), taken_step());
-    if (missed > most_missed_behind_jump) return error_ = missed, true;
     if constexpr (has_tangents<T>) varied_.forget_factor();
+    return misses(error_inside(taken_form(), taken_step()));
+  }
+
+  /// Whether the interpolant of the step misses more than it may.
+  bool misses(double missed) {
+    if (!(missed <= most_inner_error)) return error_ = missed, true;
     linearize_end();
     return false;
   }

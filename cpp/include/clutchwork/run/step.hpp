@@ -179,7 +179,7 @@ template <class Form, class T = typename Form::Scalar>
 double error_inside(Form& form, Step<Form>& step) {
   T *y = step.point(), *slope = step.slope(), *miss = step.u();
   const int nz = form.nz(), n = form.n();
-  if (!Rodas5P::factor(form, 1 / (Rodas5P::gamma * step.h))) return 0;
+  if (!Rodas5P::factor(form, 1 / (Rodas5P::gamma * step.h))) return infinity;
   interpolate(form, step, 0.5, y);
   evaluate(form, step.t + 0.5 * step.h, y, miss);
   interpolate_slope(form, step, 0.5, slope);
@@ -187,6 +187,13 @@ double error_inside(Form& form, Step<Form>& step) {
   form.add_mass_times(T(1), slope, miss);
   for (int i = nz; i < n; ++i) miss[i] += slope[i];
   Rodas5P::solve(form, miss);
+  if constexpr (!Form::small) {
+    // speeds without inertia are brought to their balance in each row
+    const Compressed<T>& mass = form.ws.rows.mass;
+    for (int i = 0; i < nz; ++i) {
+      if (mass.first[i] == mass.first[i + 1]) miss[i] = T(0);
+    }
+  }
   return error_norm(form, miss, step.y0(), y);
 }
 

@@ -21,4 +21,13 @@ double fastest_rate(const Workspace<T>& ws) {
   return damping + sqrt(stiffness);
 }
 
+/// Steps that are shorter than so many times the inverse of it have nothing in them that settles.
+inline constexpr double long_step = 10;
+
+/// Whether something may settle within a step of length h: of shared states nothing is known here.
+template <class T>
+bool may_settle_within(const Workspace<T>& ws, double h) {
+  return ws.sys.shared > 0 || h * fastest_rate(ws) >= long_step;
+}
+
 }  // namespace clutchwork

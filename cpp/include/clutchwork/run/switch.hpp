@@ -301,9 +301,9 @@ Status switch_modes(Workspace<T>& ws) {
   rest_at_ends(ws);
   if (ws.event_context.cause == Cause::slip_zero && located >= 0) ws.contact.forced[located] = 0;
   if (!at_start) jump(ws);
-  const int against = at_start ? -1 : leaves_zero_against(ws);
+  int stuck = leaves_zero_against(ws);
+  if (stuck < 0 && !at_start) stuck = ws.ratios.jammed;
   const BesideRatios<T> beside(ws);
-  const int stuck = at_start || against >= 0 ? against : ws.ratios.jammed;
   if (const int lost = stuck >= 0 ? stuck : lost_follower(ws); lost >= 0) {
     ws.detail.component = first_of(ws, lost);
     return Status::jammed;

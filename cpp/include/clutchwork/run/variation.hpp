@@ -98,12 +98,14 @@ class Variation {
     give_end(form.ws.step_start, ws_.step_start);
     at_ = 0, other_at_ = -1;
   }
-  void forget_factor() { is_whole_ = false; }
   void linearize_end(double end) {
     calls_.linearize_at(form, step, end, step.y1(), step.f1(), step.dt1(), form.ws.step_end);
     give_end(form.ws.step_end, ws_.step_end);
     at_ = 1;
   }
+
+  /// The factor of the plain step was overwritten.
+  void forget_factor() { is_whole_ = false; }
 
   /// The plain step; its error in units of the tolerance. It leaves the Jacobian of its start to the derivatives.
   double advance(double h) {

@@ -12,7 +12,7 @@ from clutchwork.signals.bases.waveform import Filtered, Wave, moved, piece_value
 
 # Bessel filter of second order whose amplitude is 1/sqrt(2) at the cutoff
 AF, BF = 1.3617, 0.6180
-# jump of a position that is round-off, over the size of all
+# jump of a position that is round-off, over the terms of which it is made
 ROUND_OFF = 1e-9
 
 
@@ -26,16 +26,21 @@ class SignalError(ValueError):
 
 def derivative(signal: Signal, unit: str) -> Filtered:
     """Time derivative of a signal that does not jump."""
-    made, before, pieces = list[Segment](), None, list(_from_start(signal))
-    size = max(abs(piece_value(piece, piece.start)) for piece, _ in pieces)
-    for piece, end in pieces:
+    made, before, size = list[Segment](), None, 0.0
+    for piece, end in _from_start(signal):
         here = piece_value(piece, piece.start)
-        if before is not None and abs(here - before) > ROUND_OFF * size:
+        if before is not None and abs(here - before) > ROUND_OFF * max(abs(here), size):
             message = f"jumps by {here - before:g} {unit} at {piece.start:g} s, which takes an infinite speed"
             raise SignalError(message, "give it a ramp there, or a `cutoff`")
         made.append(_slope(piece))
-        before = None if end is None else piece_value(piece, end)
+        before, size = (None, 0.0) if end is None else (piece_value(piece, end), _terms(piece, end))
     return Filtered(tuple(made))
+
+
+def _terms(piece: Segment, time: float) -> float:
+    """Size of the terms that a value is the sum of."""
+    lasts, sizes = time - piece.start, [piece.c0, piece.c1, piece.c2, piece.c3]
+    return sum(abs(one) * lasts**power for power, one in enumerate(sizes)) + sum(abs(wave[0]) for wave in piece.waves)
 
 
 def integral(signal: Signal, start: float) -> Filtered:

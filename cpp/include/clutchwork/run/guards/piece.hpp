@@ -57,12 +57,14 @@ template <class Form, class T = typename Form::Scalar>
   const auto end = at_end(step.t + step.h, step.y1(), step.f1(), ws.step_end);
   if (is_ample(value(start.v), value(end.v), value(start.d[0]), value(end.d[0]), step.h)) return -1;
   fit(form, step);
+  // what passes rest does not stay there
+  const T* moves = k < 0 ? still : ws.step_start.slope + k;
   auto margin = [&](double s, const T* y) {
     inputs_of(form, step.t + s * step.h, y);
     if (s > 0 && ws.in.n_rate_refs > 0) slopes_in(form, step, s);
     T rate[most_ways] = {};
     for (int w = 0; k >= 0 && w < b.ways; ++w) rate[w] = form.rate(k + w, y) + offset_rate(ws, k + w);
-    return value(law_margin(ws, b, rate, still, y + nz, step.f0() + nz, who).v);
+    return value(law_margin(ws, b, rate, moves, y + nz, step.f0() + nz, who).v);
   };
   const bool starts = abs(value(start.v)) <= fresh;
   const double mend = starts ? missed_slope(form, step, value(start.v), margin) : 0.0;
@@ -83,9 +85,8 @@ T piece_margin(Form& form, Step<Form>& step, int k, double t, const T* y, int& w
   const Branch<T>& b = ws.branch[k];
   inputs_of(form, t, y);
   T rate[most_ways];
-  const T still[most_ways] = {};
   for (int w = 0; w < b.ways; ++w) rate[w] = form.rate(k + w, y) + offset_rate(ws, k + w);
-  return law_margin(ws, b, rate, still, y + form.nz(), step.f0() + form.nz(), who).v;
+  return law_margin(ws, b, rate, ws.step_start.slope + k, y + form.nz(), step.f0() + form.nz(), who).v;
 }
 
 /// Where the laws of compliant contacts and the pieces of elements change.
