@@ -50,7 +50,10 @@ def unpressed(
 
 
 def _first_time(bounds: Array, piece: int, period: float, begin: float) -> tuple[float, float]:
-    """When a signal has a piece first behind the begin of a run [s]; a periodic one rests in its last before it starts."""
+    """When a signal has a piece first behind the begin of a run [s].
+
+    A periodic one rests in its last piece before it starts.
+    """
     since, until = float(bounds[piece]), float(bounds[piece + 1])
     if period <= 0.0:
         return since, until

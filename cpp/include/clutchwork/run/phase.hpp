@@ -148,7 +148,6 @@ class Phase : public StepSize<typename Form::Scalar> {
       if (event && leave_event(form_, step_)) balance_massless(form_, step_);
     }
     ws_.fresh_phase = ws_.stiffened = false;
-    if (event) ws_.guard.jumped_at = ws_.time;
     // at a knot the row is the right limit, which comes after it
     const Status shown = ws_.time < ws_.in.next_knot ? emit_start(form_, step_, sink_, event) : Status::running;
     if (shown != Status::running) return leave(shown);

@@ -319,6 +319,7 @@ Status switch_modes(Workspace<T>& ws) {
   if (ws.event_context.cause == Cause::impact) ws.contact.met_at[located] = ws.time;
   note_let_go(ws);
   ws.fresh_phase = true;
+  ws.guard.jumped_at = ws.time;
   if (ws.contact.failed >= 0) {
     ws.detail.component = ne + ws.contact.failed;
     return Status::fault;
