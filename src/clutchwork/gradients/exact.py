@@ -16,7 +16,7 @@ from clutchwork.gradients.bends import Bends, bends_of, spread
 from clutchwork.gradients.doubts import Doubt, Doubts
 from clutchwork.gradients.grazing import noted, together
 from clutchwork.gradients.jerk import massless
-from clutchwork.gradients.lines import UNKNOWN, Line, lines, unknown, without_derivatives
+from clutchwork.gradients.lines import UNKNOWN, UNSEEN, Line, lines, unknown, without_derivatives
 from clutchwork.gradients.measures import Context, Measure, measures
 from clutchwork.gradients.runs import Run, RunPoint, Runs
 from clutchwork.gradients.settled import NEARER, STEP, Beside, Settling
@@ -145,6 +145,8 @@ class Exact:
         return np.array([one.value for one in found]), run.slope(whole)
 
     def _is_rough(self, point: RunPoint, run: Run, one: Measure) -> bool:
+        if one.unseen > UNSEEN:
+            return True
         allowed = UNKNOWN if one.is_massless else self._asked.unknown
         return bool(one.missed) and bool(np.any(unknown(run, one, point.sizes) > allowed))
 
