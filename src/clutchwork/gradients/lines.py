@@ -96,8 +96,8 @@ def _line(run: Run, name: str, one: Measure, sizes: Array, allowed: float) -> Li
         # what moves nothing of it moves nothing that is not seen
         nothing = np.where(found[0] == 0.0, 0.0, np.nan) if one.changes else np.full(len(sizes), np.nan)
         # a tighter run may see more
-        lost = one.unseen
-        return Line(name, one.value, 0.0, nothing, nothing, one.until, none=none, rough=lost > UNSEEN, missed=lost)
+        rough = one.unseen > UNSEEN
+        return Line(name, one.value, 0.0, nothing, nothing, one.until, none=none, rough=rough, missed=one.unseen)
     least = most = found[0]
     why, lost = "", unknown(run, one, sizes)
     apart = _apart(found, max(one.size, _of_its_kind(run.primal, one), LEAST) / sizes) if len(found) > 1 else NOWHERE
