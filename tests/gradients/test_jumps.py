@@ -117,3 +117,18 @@ def test_two_borders_of_an_element_that_are_passed_at_one_instant() -> None:
     f = cw.differentiable(d, 0.1, of=of, by="engine.full_load.values[1]", **TIGHT)
     assert abs(f(f.x0)[0] - 20.0) > 10.0
     np.testing.assert_allclose(f.gradient().matrix[:, 0], central(f, 0.1), rtol=1e-6)
+
+
+@pytest.mark.parametrize("request_", [0.0, 1.0])
+def test_a_motor_whose_limit_jumps_as_it_passes_rest(request_: float) -> None:
+    """What it may drive with is more than what it may brake with: the limit jumps with the speed, not by itself."""
+    # seed 120141
+    d = cw.Driveline("swings")
+    a = d.shaft("a", inertia=0.263, speed=-2.93)
+    d.add(cw.Spring("spring", base=d.housing, follower=a, stiffness=27500.0))
+    brakes = [(0.5331, 3.5), (1.585, 0.597), (3.876, 6.41), (4.9, 0.313)]
+    limits = {"max_torque": [(0.0, 31.1), (152.0, 12.4)], "generator_torque": brakes}
+    d.add(cw.ElectricMotor("motor", shaft=a, command=13.9, lag=0.0644, initial_request=request_, **limits))
+    f = cw.differentiable(d, 0.05, of=["a.speed", "spring.twist"], by="motor.initial_request", **TIGHT)
+    # differences over 1 mN m of values of a tight run have about five digits
+    np.testing.assert_allclose(f.gradient().matrix[:, 0], central(f, 1e-3), rtol=1e-4)

@@ -323,20 +323,19 @@ void exchange(P& a, P& b) {
 /// those that were written down last.
 enum class Written { now, before, last };
 
-/// Whether the first rate of a transmission is given: its row is along the second direction alone, whatever the ratio.
-template <class T>
-bool is_given(const Workspace<T>& ws, int a) {
-  return follower_of(ws, a) < 0 && value(ws.geometry.own[first_of(ws, a)]) == 0;
-}
-
-/// The ratio of a transmission in a decision: one that leaves zero beside what is given is that of a nanosecond later.
-/// docs/theory/varying-ratios.md (6)
-inline constexpr double soon = 1e-9;
+/// Whether the ratio of a transmission is zero where its first rate is given: its row is along the second direction
+/// alone, whatever the ratio.
 template <class T>
 bool leaves_zero(Workspace<T>& ws, int a) {
   const T* own = ws.ratios.inside ? ws.ratios.own : ws.geometry.own;
   return value(ratio_now(ws, a).v) == 0 && follower_of(ws, a) < 0 && value(own[first_of(ws, a)]) == 0;
 }
+
+/// [s] how much later a ratio is looked at that leaves zero.
+inline constexpr double soon = 1e-9;
+
+/// The ratio of a transmission in a decision: one that leaves zero beside what is given is that of a nanosecond later.
+/// docs/theory/varying-ratios.md (6)
 template <class T>
 T ratio_to_decide(Workspace<T>& ws, int a) {
   const Dual<T, 1> ratio = ratio_now(ws, a);

@@ -127,12 +127,14 @@ bool balance_massless(Form& form, Step<Form>& step) {
   return way > jump * (1 + fastest);
 }
 
-/// What is missing in the balance of the speeds without inertia, and the sizes of the torques at them.
+/// What is missing in a balance of torques, and their sizes.
 struct Imbalance {
   double missing = 0, size = 0;
   /// Whether that is more than a share of the torques.
   bool exceeds(double share) const { return missing > share * size; }
 };
+
+/// That of the speeds without inertia, of which d is the balance.
 template <class Form, class T = typename Form::Scalar>
 Imbalance imbalance_of(Form& form, const T* d) {
   Workspace<T>& ws = form.ws;
