@@ -132,3 +132,25 @@ def test_a_motor_whose_limit_jumps_as_it_passes_rest(request_: float) -> None:
     f = cw.differentiable(d, 0.05, of=["a.speed", "spring.twist"], by="motor.initial_request", **TIGHT)
     # differences over 1 mN m of values of a tight run have about five digits
     np.testing.assert_allclose(f.gradient().matrix[:, 0], central(f, 1e-3), rtol=1e-4)
+
+
+def test_a_contact_that_breaks_away_from_nothing_beside_a_border() -> None:
+    """Before the border its torque has the other sign, so a slope over both sides of it says nothing."""
+    # seed 150270
+    d = cw.Driveline("from nothing")
+    sun, support, out = (d.shaft(name, inertia=j) for name, j in (("in", 0.01), ("crank", 0.7), ("out", 0.022)))
+    nut, other = d.mass("nut", mass=18.9), d.mass("other", mass=21.8)
+    points = [[0.02209, -1.824], [0.05773, 0.5258], [0.1225, 1.376]]
+    curves = [[-0.2067, 1.978], [-0.2526, 2.526], [-0.4499, 1.868]]
+    # round-off of it keeps the screw for a moment
+    d.add(cw.Torque("drive", shaft=other, torque=12.3))
+    d.add(cw.BevelGear("bevel", input=sun, output=out, support=support, teeth_input=51, teeth_output=38))
+    throttle, ripple = cw.Table(points), {"orders": [2.0], "amplitudes": [0.5], "phases": [0.0]}
+    grid = {"speeds": [0.0, 1.251, 4.17], "throttles": [0.0, 1.0], "torques": curves, "deficit": [0.0, 0.48, 0.81]}
+    d.add(cw.EngineTorque("engine", shaft=support, throttle=throttle, **grid, **ripple))
+    d.add(cw.Leadscrew("screw", screw=out, mass=nut, lead=0.007, radius=0.005, friction_coefficient=0.238))
+    f = cw.differentiable(d, 0.15, of=cw.break_away("screw"), by="engine.throttle.values[1]", **TIGHT)
+    # the throttle passes zero
+    (begin, low), (end, high) = points[:2]
+    assert f.gradient().values[0] == pytest.approx(begin - low * (end - begin) / (high - low), rel=1e-9)
+    assert f.gradient().matrix[0, 0] == pytest.approx(-high * (end - begin) / (high - low) ** 2, rel=1e-6)

@@ -403,7 +403,8 @@ class Law(Declared):
     A law that sticks is set-valued: it locks exactly. One that does not is compliant: its torque is a function of
     slip and of its own states, and it never locks. Some fields have a meaning of their own wherever a law has them:
     `static` and `kinetic`, the coefficients at rest and while it slips, numbers or tables; `band`, the slip [rad/s] up
-    to which it sticks, which widens the tolerance of its contact; `extrapolation`, what tables do beyond their ends.
+    to which it sticks, which widens the tolerance of its contact; `bends`, whether it bends within steps, at slips that
+    have no event; `extrapolation`, what tables do beyond their ends.
     """
 
     # set by @component
@@ -418,6 +419,7 @@ class Law(Declared):
     static = cast("Coefficients | None", None)
     kinetic = cast("Coefficients | None", None)
     band = 0.0
+    bends = False
     extrapolation = "nearest"
 
     def problems(self) -> Found:

@@ -82,7 +82,8 @@ def candidates(one: Extreme, steps: Steps, values: Array) -> list[Located]:
         for step in near.tolist() if bound >= best - allowed else ():
             own, is_top = sign * coefficients[step], step in tops
             rough = float(abs(own[-1]) / steps.length[step])
-            found += [one._replace(rough=rough) for one in _in_step(step, own, PLACES @ own, sign, allowed, is_top)]
+            some = [_at_bend(top, steps, values) for top in _in_step(step, own, PLACES @ own, sign, allowed, is_top)]
+            found += [top._replace(rough=rough) for top in some]
     least = max((one.value for one in found), default=0.0) - allowed
     return sorted((one for one in found if one.value >= least), key=lambda one: one.share in (0.0, 1.0))
 
@@ -119,6 +120,7 @@ def _near(one: Extreme, steps: Steps, values: Array) -> Iterator[CandidateSteps]
     rise = np.abs(np.diff(samples, 2)).max(axis=1, initial=0.0) / 8
     for sign in SIGNS[one.kind]:
         upper = (sign * samples).max(axis=1)
+        upper[_onto_plateaus(steps, sign * values, sign * samples, _allowed(values))] = -np.inf
         best = float(upper.max(initial=-np.inf))
         near = np.flatnonzero(upper + rise >= best - _allowed(values))
         near, tops = _without_hillsides(near, sign * coefficients, sign * samples, _allowed(values))
@@ -129,6 +131,16 @@ def _near(one: Extreme, steps: Steps, values: Array) -> Iterator[CandidateSteps]
             ends = level if len(level) else near
             near = np.unique([*first, ends[0], ends[-1]])
         yield CandidateSteps(sign, coefficients, near, tops, best, float((upper + rise).max(initial=-np.inf)))
+
+
+def _onto_plateaus(steps: Steps, values: Array, samples: Array, allowed: float) -> NDArray[np.bool_]:
+    """Steps beside a plateau whose polynomials are above it, while their rows are not: that is from a bend inside."""
+    highs, rows = samples.max(axis=1), values.max(axis=1)
+    level, found = np.ptp(samples, axis=1) <= LEVEL * allowed, np.zeros(len(steps), dtype=bool)
+    for own, near in ((slice(-1), slice(1, None)), (slice(1, None), slice(-1))):
+        above = (rows[own] <= highs[near] + LEVEL * allowed) & (highs[own] > highs[near] + allowed)
+        found[own] |= level[near] & above & ~steps.jumps[1:]
+    return found
 
 
 def _without_hillsides(near: Places, coefficients: Array, samples: Array, allowed: float) -> tuple[Places, Places]:
@@ -243,7 +255,7 @@ def add_extreme(primal: Primal, one: Extreme, found: Located, into: Functional) 
         place = several_steps.top(primal, partial(_rows_of, primal, one), *place)
     whole = [(place[0], sign * steps.at(*place))]
     inside = end is None or not 0 < end < len(steps)
-    if not inside and primal.between[0][end] == SMOOTH:
+    if not inside and primal.between[0][end] == SMOOTH and not found.is_level:
         whole = _of_bend(primal, one, int(end or 0), sign) or whole
     held = torque_at_limit(primal, one.signal, found.step) if not inside and found.share == 1.0 else None
     if held is not None:
@@ -277,9 +289,57 @@ def _rows_of(primal: Primal, one: Extreme, first: int, last: int) -> Array:
 
 def _jumps(primal: Primal, one: Extreme, end: int) -> bool:
     """Whether a signal jumps between two steps."""
-    steps, (before, behind) = primal.steps, (signal_at(primal, one.signal, primal.steps.rows[end - k]) for k in (1, 0))
-    values = float(steps.right[end - 1] @ before), float(steps.left[end] @ behind)
-    return abs(values[0] - values[1]) > JUMP * max(map(abs, values))
+    sides = Sides.of(primal.steps, end, *_beside(primal, one, end))
+    return sides.differ and sides.meeting is None
+
+
+def _beside(primal: Primal, one: Extreme, end: int) -> tuple[Array, Array]:
+    """The signal in the rows of the steps before and behind an instant."""
+    rows = primal.steps.rows
+    return signal_at(primal, one.signal, rows[end - 1]), signal_at(primal, one.signal, rows[end])
+
+
+class Sides(NamedTuple):
+    """A signal on both sides of an instant without an event: its values, its slopes, and where rows are [s]."""
+
+    before: float
+    behind: float
+    rise: float
+    fall: float
+    gap: tuple[float, float]
+
+    @classmethod
+    def of(cls, steps: Steps, end: int, before: Array, behind: Array) -> Sides:
+        """Those at the begin of a step, from the values in the rows of the step before and of its own."""
+        gap = float((steps.share[end - 1, -1] - 1.0) * steps.length[end - 1]), float(
+            steps.share[end, 0] * steps.length[end]
+        )
+        values = float(steps.right[end - 1] @ before), float(steps.left[end] @ behind)
+        slopes = float(steps.right_slope[end - 1] @ before), float(steps.left_slope[end] @ behind)
+        return cls(*values, *slopes, gap)
+
+    @property
+    def differ(self) -> bool:
+        """Whether the values are those of a jump."""
+        return abs(self.before - self.behind) > JUMP * max(abs(self.before), abs(self.behind))
+
+    @property
+    def meeting(self) -> float | None:
+        """How far behind the instant both sides meet in a bend, where no rows are between [s]; None without one."""
+        if abs(self.rise - self.fall) <= BENT * max(abs(self.rise), abs(self.fall)):
+            return None
+        away = (self.behind - self.before) / (self.rise - self.fall)
+        return away if self.gap[0] <= away <= self.gap[1] else None if self.differ else 0.0
+
+
+def _at_bend(top: Located, steps: Steps, values: Array) -> Located:
+    """The same with the value at which both sides meet, where it is at a bend."""
+    end = top.begins
+    if end is None or not 0 < end < len(steps) or steps.jumps[end]:
+        return top
+    sides = Sides.of(steps, end, *values[end - 1 : end + 1])
+    away = sides.meeting
+    return top if not away else top._replace(value=top.sign * (sides.before + away * sides.rise))
 
 
 def _of_bend(primal: Primal, one: Extreme, end: int, sign: float) -> list[tuple[int, Array]]:
@@ -287,10 +347,11 @@ def _of_bend(primal: Primal, one: Extreme, end: int, sign: float) -> list[tuple[
 
     Both sides stay equal, which says how the instant moves.
     """
-    steps, (before, behind) = primal.steps, (signal_at(primal, one.signal, primal.steps.rows[end - k]) for k in (1, 0))
-    rates = float(steps.right_slope[end - 1] @ before), float(steps.left_slope[end] @ behind)
-    bend = rates[0] - rates[1]
-    if abs(bend) <= BENT * max(map(abs, rates)) or _jumps(primal, one, end):
+    steps, sides = primal.steps, Sides.of(primal.steps, end, *_beside(primal, one, end))
+    away = sides.meeting
+    if away is None:
         return []
-    shares = -rates[1] / bend, rates[0] / bend
-    return [(end - 1, sign * shares[0] * steps.right[end - 1]), (end, sign * shares[1] * steps.left[end])]
+    shares = sign * sides.fall / (sides.fall - sides.rise), sign * sides.rise / (sides.rise - sides.fall)
+    before = shares[0] * (steps.right[end - 1] + away * steps.right_slope[end - 1])
+    behind = shares[1] * (steps.left[end] + away * steps.left_slope[end])
+    return [(end - 1, before), (end, behind)]

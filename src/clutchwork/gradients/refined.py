@@ -1,6 +1,7 @@
 """Steps in which a signal bends or jumps without an event, which polynomials miss, so that they are split there.
 
-A contact of a dependent set reaches its capacity, or a capacity depends on the direction of its torque, which reverses.
+A contact of a dependent set reaches its capacity, a capacity depends on the direction of its torque, which reverses,
+or a formula has a `min`, a `max`, a condition.
 docs/theory/gradients.md (19)
 """
 
@@ -35,13 +36,17 @@ class Seen(NamedTuple):
 
     values: Sequence[Array]  # of the signal of each extreme
     torques: Sequence[Array | None]  # whose sign decides about it
-    may_bend: Mask  # steps in which contacts share a load
+    may_bend: Mask  # steps in which contacts share a load, or a formula bends
 
 
 Values = Callable[[Steps], Seen]
 
 # the last coefficient of a polynomial that misses a bend, of the largest size of the signal
 ROUGH = 1e-6
+# the same of the second one, where it is more than round-off of the signal
+BENT, NOISE = 0.02, 1e-11
+# what polynomials of both neighbours may miss in it, of what it changes by, and of its largest value
+NEAR = 1e-5, 1e-12
 # a step is first cut into so many parts, then where polynomials of its neighbours meet; so often at most
 CUTS, ROUNDS = 8, 6
 # shortest parts, of a step, and [s]
@@ -80,6 +85,7 @@ class WithinSteps:
 
     sharing: Sharing | None
     torques: Mapping[str, int]  # of each capacity that is asked for: the column of its torque
+    bends: bool = False  # whether formulas bend
 
     @classmethod
     def of(cls, system: System, ones: Sequence[Extreme]) -> WithinSteps | None:
@@ -89,7 +95,9 @@ class WithinSteps:
             torques[f"{contact.name}.capacity"] = known.columns["contact_torque"].start + number
         kept = {one.signal: torques[one.signal] for one in ones if one.signal in torques}
         sharing = Sharing.of(system) if ones else None
-        return cls(sharing, kept) if sharing is not None or kept else None
+        laws = (branch.component.friction for branch in (*known.contacts, *known.elements)) if ones else ()
+        bends = any(law is not None and law.bends for law in laws)
+        return cls(sharing, kept, bends) if sharing is not None or kept or bends else None
 
     @property
     def columns(self) -> tuple[int, ...]:
@@ -107,7 +115,7 @@ class WithinSteps:
         # beside its middle no event is near
         middle = rows[places[:, 2], :width]
         bends = self.sharing.within(middle) if self.sharing is not None else np.zeros(len(places), dtype=bool)
-        return Seen(values, torques, bends)
+        return Seen(values, torques, bends | self.bends)
 
 
 def _depend(rates: Array) -> bool:
@@ -138,10 +146,11 @@ def _rough(one: Extreme, steps: Steps, values: Array, may_bend: Mask) -> Iterato
     """Steps that reach the extreme with a polynomial that misses a bend."""
     if not may_bend.any():
         return
-    last = np.abs(np.einsum("ni,ni->n", steps.basis[:, PARTS], values))
-    size = float(np.abs(values).max(initial=0.0))
+    coefficients = np.abs(np.einsum("nki,ni->nk", steps.basis, values))
+    last, size = coefficients[:, PARTS], float(np.abs(values).max(initial=0.0))
+    rough = (last > ROUGH * size) | ((last > BENT * coefficients[:, 1]) & (last > NOISE * size))
     for step in reaching(one, steps, values, last).tolist():
-        if may_bend[step] and last[step] > ROUGH * size:
+        if may_bend[step] and rough[step]:
             yield step
 
 
@@ -155,7 +164,7 @@ def _places(steps: Steps, values: Array, step: int) -> Iterator[float]:
 
 
 def _meeting(steps: Steps, values: Array, step: int) -> float | None:
-    """The place in a step at which the polynomials before and behind it meet; None where they do not."""
+    """The place in a step at which the polynomials before and behind it meet; None where they do not, or miss it."""
     if not 0 < step < len(steps) - 1:
         return None
     before, behind = (steps.basis[near] @ values[near] for near in (step - 1, step + 1))
@@ -164,11 +173,18 @@ def _meeting(steps: Steps, values: Array, step: int) -> float | None:
     if min(longer) < 0.5 or max(longer) > 2.0:
         return None
 
+    def sides(place: Array) -> tuple[Array, Array]:
+        return polyval(1.0 + place * longer[0], before), polyval((place - 1.0) * longer[1], behind)
+
     def apart(place: Array) -> Array:
-        found: Array = polyval(1.0 + place * longer[0], before) - polyval((place - 1.0) * longer[1], behind)
+        found: Array = np.subtract(*sides(place))
         return found
 
-    return _zero(apart)
+    if (place := _zero(apart)) is None:
+        return None
+    known, own = np.where(steps.share[step] < place, *sides(steps.share[step])), values[step]
+    allowed = NEAR[0] * float(np.ptp(own)) + NEAR[1] * float(np.abs(own).max())
+    return place if np.abs(known - own).max() <= allowed else None
 
 
 def _at(coefficients: Array, place: Array) -> Array:

@@ -39,6 +39,10 @@ class Seen:
         # a table shows what is beyond
         rows = slice(-1 if run.status in ("unbalanced", "out_of_table") else None)
         self.run, self.wiring, self.rows, self.time = run, run.wiring, run.rows[rows], run.time[rows]
+        if run.status == "zeno" and self.chatters:
+            # one that a sign of a slip ends stops between two decisions
+            whole = self.time < self.time[-1]
+            self.rows, self.time = self.rows[whole], self.time[whole]
         self.inertia = np.array([node.inertia for node in self.wiring.nodes])
         self.rtol = float(run.options.rtol)
 

@@ -123,8 +123,8 @@ def drives(seen: Seen) -> Iterator[Fault]:
             if "bound" in branch.component.hooks:
                 slack = slack + ROUND_OFF * seen.all_torques * np.abs(rate[:, number])
                 slack = np.where(seen.runs_away, np.inf, slack)
-            # where the load turns around the step ends on its interpolant, which is good to the tolerance
-            share = max(1e-7, seen.rtol) if "bound" in branch.component.hooks else 1e-7
+            # where the load turns around the step ends on its interpolant, which is good to some tolerances
+            share = max(1e-7, 10.0 * seen.rtol) if "bound" in branch.component.hooks else 1e-7
             yield from _gives(seen, branch, power, slack, share)
     rate, torque = seen.speed @ seen.elements, seen.part("element_torque")
     for numbers in seen.numbers(Work.LOSS):

@@ -240,30 +240,36 @@ double guard_rate(Form& form, Step<Form>& step, const Hit& hit, const T* velocit
     if (G::rate(form, hit, velocity, rate)) return rate;
   }
   T* probe = step.k(1);
+  bool own = true, ahead = true;
+  auto plain = [&](double later) {
+    for (int i = 0; i < form.n(); ++i) probe[i] = T(value(step.y0()[i]) + later * value(velocity[i]));
+    int who = hit.who;
+    form.ws.in.time = -infinity;
+    const double found = value(G::at(form, step, hit, form.ws.time + later, probe, who));
+    own = own && who == hit.who, ahead = ahead && (later < 0 || who == hit.who);
+    return found;
+  };
+  const double here = plain(0);
+  double behind = 0;
+  bool found_behind = false;
   for (double share = 1; share > 0.5 * closest; share *= 0.1) {
     const double reach = 0.01 * share * larger(form.ws.moved.span, 1e-12);
-    bool own = true, ahead = true;
-    auto plain = [&](double along) {
-      for (int i = 0; i < form.n(); ++i) probe[i] = T(value(step.y0()[i]) + along * reach * value(velocity[i]));
-      int who = hit.who;
-      form.ws.in.time = -infinity;
-      const double found = value(G::at(form, step, hit, form.ws.time + along * reach, probe, who));
-      own = own && who == hit.who, ahead = ahead && (along < 0 || who == hit.who);
-      return found;
-    };
+    own = ahead = true;
+    const double next = plain(reach), last = plain(2 * reach);
     // what is smooth has nearly the same slope over twice the reach
-    double near = (plain(1) - plain(-1)) / (2 * reach), far = (plain(2) - plain(-2)) / (4 * reach);
+    double near = (next - plain(-reach)) / (2 * reach), far = (last - plain(-2 * reach)) / (4 * reach);
     double found = (4 * near - far) / 3;
-    if (!own && ahead) {
-      // before it another guard of the same element was less, as that which has just been passed
-      const double here = plain(0);
-      near = (plain(1) - here) / reach, far = (plain(2) - here) / (2 * reach), found = 2 * near - far, own = true;
-    }
+    const double first = (next - here) / reach, second = (last - here) / (2 * reach);
+    if (ahead && !found_behind && abs(first - second) <= straight * larger(abs(first), abs(second)))
+      behind = 2 * first - second, found_behind = true;
+    // before it another guard of the same element was less, as that which has just been passed
+    if (!own && ahead) near = first, far = second, found = 2 * first - second, own = true;
     const double apart = own ? abs(near - far) : larger(abs(near - far), 1e300);
     if (apart < least || share == 1) rate = found, least = apart;
-    if (own && apart <= straight * larger(abs(near), abs(far))) break;
+    if (own && apart <= straight * larger(abs(near), abs(far))) return found;
   }
-  return rate;
+  // what bends just before it is another event
+  return found_behind ? behind : rate;
 }
 
 /// Whether a guard did not pass zero where it was hit: what happened at the same instant has made it jump past.

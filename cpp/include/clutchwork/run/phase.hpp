@@ -4,6 +4,7 @@
 #include <clutchwork/contacts/locked.hpp>
 #include <clutchwork/contacts/ratios.hpp>
 #include <clutchwork/contacts/sticking.hpp>
+#include <clutchwork/motion/lost_ratios.hpp>
 #include <clutchwork/run/clamp_loads.hpp>
 #include <clutchwork/run/event.hpp>
 #include <clutchwork/run/event_sensitivity.hpp>
@@ -14,6 +15,7 @@
 #include <clutchwork/run/output.hpp>
 #include <clutchwork/run/passive_events.hpp>
 #include <clutchwork/run/power.hpp>
+#include <clutchwork/run/seizing.hpp>
 #include <clutchwork/run/snapshot.hpp>
 #include <clutchwork/run/step.hpp>
 #include <clutchwork/run/step_calls.hpp>
@@ -61,6 +63,7 @@ class Phase : public StepSize<typename Form::Scalar> {
 
  public:
   using Scalar = T;
+  using FormType = Form;
 
   template <class Integrator>
   Phase(Workspace<T>& ws, double t_end, Sink& sink, Tag<Integrator>)
@@ -94,26 +97,7 @@ class Phase : public StepSize<typename Form::Scalar> {
     return settle_step(written);
   }
   /// The step has become too short. The inputs are those of its last stage.
-  [[gnu::noinline]] void collapse() {
-    ws_.in.time = -infinity;
-    if constexpr (Form::full) {
-      const auto& ratios = taken_form().ws.ratios;
-      int lost = -1;
-      if (ratios.n > 0) {
-        evaluate(taken_form(), ws_.time, taken_step().y0(), taken_step().slope());
-        lost = vanished_row(taken_form().ws);
-        if (lost < 0) lost = passes_at_once(ratios);
-      }
-      if (lost >= 0) return jam(lost);
-      if (ws_.loads.n_sliding > 0 && stops_running_away()) return;
-      if (const int c = takes_all(ws_); c >= 0) {
-        ws_.detail.component = int(ws_.sys.elements) + c;
-        return leave(Status::unbalanced);
-      }
-    }
-    blame(form_, step_);
-    leave(ws_.detail.component >= 0 || !(error_ <= 1e300) ? Status::not_finite : Status::step_collapse);
-  }
+  void collapse() { end_collapsed(*this, error_ <= 1e300); }
   /// To where the phase stands.
   [[gnu::noinline]] void leave(Status status) {
     // a run that is left, to make room for rows, goes on as if it were not
@@ -138,8 +122,8 @@ class Phase : public StepSize<typename Form::Scalar> {
     if constexpr (Form::full) {
       if (ws_.ratios.n > 0) prepare_ratios(form_);
       if (fresh) keep_ties(form_, step_, ws_.time, step_.y0());
-      if (ws_.ratios.jammed >= 0) return jam(ws_.ratios.jammed);
-      if (fresh && ws_.ratios.n > 0 && ws_.ratios.stopped >= 0) return stop_at(ws_.ratios.stopped);
+      if (ws_.ratios.jammed >= 0) return jam(*this, ws_.ratios.jammed);
+      if (fresh && ws_.ratios.n > 0 && ws_.ratios.stopped >= 0) return stop_at(*this, ws_.ratios.stopped);
     }
     if constexpr (!Form::small) {
       if (fresh && balance_massless(form_, step_) && event && may_decide_again()) return decide_again();
@@ -193,6 +177,16 @@ class Phase : public StepSize<typename Form::Scalar> {
   void decide(Cause cause, int contact = -1) {
     ws_.event_context.cause = cause;
     ws_.event_context.contact = contact;
+    over_ = true;
+  }
+  /// The same where speeds have jumped at the present instant: the modes were decided with others.
+  void decide_again() {
+    ws_.guard.balanced_at = ws_.time;
+    export_state(form_, step_.y0());
+    for (int c = 0; c < ws_.sys.contacts; ++c) ws_.event_context.mode[c] = ws_.contact.mode[c];
+    // the start is decided: what changes now has events
+    if (ws_.event_context.cause == Cause::initial) ws_.event_context.cause = Cause::other_event;
+    ws_.event_context.contact = -1;
     over_ = true;
   }
   /// The run ends with the present state of the phase, which nobody exports.
@@ -255,28 +249,6 @@ class Phase : public StepSize<typename Form::Scalar> {
   /// Speeds without inertia have jumped to their balance: the modes were decided with other torques. Once at an
   /// instant.
   bool may_decide_again() const { return ws_.sys.contacts > 0 && ws_.guard.balanced_at != ws_.time; }
-  void decide_again() {
-    ws_.guard.balanced_at = ws_.time;
-    export_state(form_, step_.y0());
-    for (int c = 0; c < ws_.sys.contacts; ++c) ws_.event_context.mode[c] = ws_.contact.mode[c];
-    // the start is decided: what changes now has events
-    if (ws_.event_context.cause == Cause::initial) ws_.event_context.cause = Cause::other_event;
-    ws_.event_context.contact = -1;
-    over_ = true;
-  }
-
-  /// A locked contact has stopped what moved, as beside a dead point: its impulse is an event, and the modes are
-  /// decided with the speeds that it leaves. docs/theory/varying-ratios.md (10)
-  [[gnu::noinline]] void stop_at(int c) {
-    const int d = int(ws_.sys.elements) + c;
-    const T before = energy_of_motion(ws_);
-    export_state(form_, step_.y0());
-    const T lost = before - energy_of_motion(ws_);
-    ws_.work[d] -= lost;
-    take_heat(ws_, d, lost, step_.y0() + form_.nz());
-    record(ws_, {c, locked, locked, Cause::impulse, 0.0, 0.0, 0.0, value(before), value(before - lost)});
-    decide_again();
-  }
 
   // -------------------------------------------------------------------------------------------------- room for a step
 
@@ -349,14 +321,7 @@ class Phase : public StepSize<typename Form::Scalar> {
     if (!judge(error, all_finite(form_.n(), taken_step().y1()))) return false;
     if constexpr (Form::full) {
       keep_ties(taken_form(), taken_step(), end_of_step(), taken_step().y1());
-      auto& ws = taken_form().ws;
-      const bool held = ws.ratios.n > 0 && ws.held.n > 0;
-      ws.ratios.reversed = held ? turned_tie(ws.ratios) : -1;
-      ws.ratios.lost = held ? lost_tie(ws.ratios) : -1;
-      if (ws.ratios.n > 0 && ws.ratios.jammed < 0) ws.ratios.jammed = turned_over(ws);
-      const bool kept = ws.ratios.n > 0 && ws.ratios.jammed < 0;
-      if (kept) ws.ratios.jammed = passed_over(ws.ratios);
-      passes_ = kept && ws.ratios.jammed >= 0;
+      passes_ = note_lost(taken_form().ws);
     }
     linearize_end();
     return true;
@@ -397,7 +362,7 @@ class Phase : public StepSize<typename Form::Scalar> {
     } else if (Form::full && taken_form().ws.ratios.jammed >= 0) {
       // whatever comes first ends a step of its own: this one has lost a speed, perhaps far from its start
       const bool early = passes_ && reach_ > shortest * larger(1e-2, ws_.time);
-      hit.none() && !early ? jam(taken_form().ws.ratios.jammed) : (error_ = much_missed, reject_and_shrink());
+      hit.none() && !early ? jam(*this, taken_form().ws.ratios.jammed) : (error_ = much_missed, reject_and_shrink());
     } else if (is_written || reach(hit.s)) {
       hit.none() ? accept() : meet(hit);
       return is_written;
@@ -407,29 +372,6 @@ class Phase : public StepSize<typename Form::Scalar> {
 
   void reject() {
     if (!shorten()) collapse();
-  }
-
-  /// A gear whose torque grows beyond all bounds jams. Whether one does.
-  bool stops_running_away() {
-    evaluate(form_, ws_.time, step_.y0(), step_.slope());
-    const int c = runs_away(ws_);
-    if (c < 0) return false;
-    // what is driven on cannot be stopped
-    if (events_crowd(ws_, int(ws_.sys.elements) + c)) return leave(Status::unbalanced), true;
-    rest_step(form_, step_);
-    export_state(form_, step_.y0());
-    note_before(form_, step_, 0.0);
-    keep_prescribed(ws_), keep_ratios(ws_);
-    ws_.loads.jammed = c;
-    ws_.last_step = 0;
-    decide(Cause::jam, c);
-    return true;
-  }
-
-  /// A transmission whose speeds are prescribed otherwise than its ratio says.
-  void jam(int transmission) {
-    ws_.detail.component = first_of(ws_, transmission);
-    leave(Status::jammed);
   }
 
   /// Whether the step must be repeated to end where a guard was hit, because its own estimate does not speak for that

@@ -3,6 +3,7 @@
 #include <clutchwork/components/input.hpp>
 #include <clutchwork/contacts/locked.hpp>
 #include <clutchwork/motion/dynamics.hpp>
+#include <clutchwork/motion/lost_ratios.hpp>
 #include <clutchwork/motion/shared.hpp>
 #include <clutchwork/run/integrator/memory.hpp>
 #include <clutchwork/run/massless.hpp>

@@ -92,6 +92,12 @@ class FormulaLaw(Law):
         rates = tuple((name, _text(rate)) for name, rate in self.rate_texts().items())
         return compiled(Texts(_text(self.expression), _text(self.at_rest), rates, names, self.sticks))
 
+    @property
+    def bends(self) -> bool:
+        """Whether it bends within steps."""
+        program, _ = self._program
+        return program is not None and program.bends
+
     def reads(self, name: str) -> bool:
         """Whether it reads an input."""
         program, _ = self._program

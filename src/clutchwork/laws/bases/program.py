@@ -18,6 +18,8 @@ OPERATIONS = (
     "negate", "size", "smaller", "larger", "power", "root", "exp", "exp_behind", "fade", "fade_behind", "bell", "log",
     "tanh", "atan", "sin", "cos", "sign", "less", "pick",
 )  # fmt: skip
+# those whose results bend or jump
+BENDING = frozenset({"size", "smaller", "larger", "sign", "less", "pick"})
 # numbers that a formula may have at once: what it reads, its constants and its results
 MOST_REGISTERS = 64
 # an instruction says what it does, and where the first of three numbers stands, in one word
@@ -40,6 +42,11 @@ class Program(NamedTuple):
     for_coefficient: int  # instructions that the coefficient needs, and with it the rates
     for_rates: int
     reads: frozenset[str]
+
+    @property
+    def bends(self) -> bool:
+        """Whether any of its operations bends."""
+        return any(node.operation in BENDING for node in self.nodes)
 
     @property
     def code(self) -> Points:

@@ -3,7 +3,7 @@
 #include <clutchwork/components/input.hpp>
 #include <clutchwork/contacts/locked.hpp>
 #include <clutchwork/contacts/sticking.hpp>
-#include <clutchwork/motion/ratios.hpp>
+#include <clutchwork/motion/lost_ratios.hpp>
 #include <clutchwork/run/clamp_loads.hpp>
 #include <clutchwork/run/guards/torques.hpp>
 #include <clutchwork/run/hit.hpp>
