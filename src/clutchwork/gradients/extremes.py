@@ -196,15 +196,15 @@ def apart(primal: Primal, found: list[Located]) -> list[Located]:
     """Without those that are another side of one extreme: at one instant, or on steps that go on smoothly.
 
     Of both sides of an instant that one stays whose polynomial is the smoother one, of a plateau and what leads to it
-    the plateau.
+    the plateau. At a knot that does not move both stay: a number may make the signal jump there.
     """
-    kept, kinds = list[Located](), primal.between[0]
+    kept, kinds, stays = list[Located](), primal.between[0], np.r_[primal.stays, False]
     for one in sorted(_without_slopes(found, kinds), key=lambda one: (one.begins is not None, one.rough)):
         near = [other for other in kept if abs(other.step - one.step) <= 1 and other.sign == one.sign]
         if (one.is_flat and all(other.is_flat for other in near)) or all(
             other.step != one.step
             and kinds[max(other.step, one.step)] != SMOOTH
-            and (one.begins is None or other.begins != one.begins)
+            and (one.begins is None or other.begins != one.begins or stays[one.begins])
             for other in near
         ):
             kept.append(one)
@@ -236,6 +236,11 @@ def _leads_to(one: Located, end: tuple[float, int, int], kinds: Places) -> bool:
 def value(one: Extreme, found: list[Located]) -> float:
     """The extreme itself."""
     return float("nan") if not found else -found[0].value if one.kind == "minimum" else found[0].value
+
+
+def further(one: Extreme, value: float, other: float) -> float:
+    """The value that is more of an extreme; NaN is none."""
+    return other if (other < value if one.kind == "minimum" else other > value) else value
 
 
 def kinks(primal: Primal, found: list[Located]) -> tuple[float, ...]:

@@ -33,7 +33,7 @@ def knots(chart: Chart, words: Array, slopes: Slopes, begin: float, end: float) 
     if chart.stays(*TIMES) or not (
         slopes.matrix[slopes.within(first, pieces)].any() or slopes.touch(at_period, signals)
     ):
-        return Knots(np.zeros(0), np.zeros((0, width)), np.zeros(0))
+        return Knots(np.zeros(0), np.zeros((0, width)), np.zeros(0), np.array(times_of(chart, words, end)))
     times, moved = [np.zeros(0)], [np.zeros((0, width))]
     for number, (segment, count) in enumerate(_segments(chart.assembled.system)):
         period, by_period = float(words[at_period + number]), _of(slopes, at_period + number)
@@ -83,7 +83,8 @@ def _met(times: Array, moved: Array, begin: float, end: float) -> Knots:
     meeting = close[apart > ALIKE * np.abs(moved[close]).max(axis=1, initial=0.0)]
     meets = np.unique(np.concatenate([times[at_ends], times[meeting]]))
     inside = moves & (begin < times) & (times < end)
-    return Knots(times[inside], moved[inside], meets[(begin - room.max() <= meets) & (meets <= end + room.max())])
+    within = (begin - room.max() <= meets) & (meets <= end + room.max())
+    return Knots(times[inside], moved[inside], meets[within], times)
 
 
 def _of(slopes: Slopes, word: int) -> Array:

@@ -85,8 +85,8 @@ def _nothing(name: str, one: Measure, t_end: float) -> str:
     if not one.changes:
         return f"{name} does not happen before {t_end:g} s; take one that does, or a later end time"
     if one.unseen > UNSEEN:
-        what = f"{min(one.unseen, 1.0):.2%} of {name} is from motion that settles within a few nanoseconds"
-        return f"{what}, which has no derivatives; give what is so stiff more inertia, or start it where it has settled"
+        what = f"{name} is reached in" if one.when else f"{min(one.unseen, 1.0):.2%} of {name} is from"
+        return f"{what} motion that settles within a few nanoseconds, which has no derivatives; give what is so stiff more inertia, or start it where it has settled"
     return ""
 
 
@@ -103,8 +103,9 @@ def _line(run: Run, name: str, one: Measure, sizes: Array, allowed: float) -> Li
     apart = _apart(found, max(one.size, _of_its_kind(run.primal, one), LEAST) / sizes) if len(found) > 1 else NOWHERE
     if len(apart):
         remedy = "move a number so that one of them is the only one"
-        when = f"{one.when[0]:.9g} s and at {one.when[apart[0]]:.9g} s"
-        why = f"{name} is reached at {when}, and they move apart; {remedy}"
+        first, second = (f"{one.when[place]:.9g} s" for place in (0, apart[0]))
+        when = f"at {first} and at {second}" if first != second else f"right before {first} and right behind it"
+        why = f"{name} is reached {when}, and they move apart; {remedy}"
         least, most = found.min(axis=0), found.max(axis=0)
     if one.is_massless and np.any(lost > UNKNOWN):
         least, most = (np.where(lost > UNKNOWN, np.nan, side) for side in (least, most))

@@ -28,6 +28,8 @@ from clutchwork.sweeps.outputs import (
 
 Array = NDArray[np.float64]
 
+# an extreme in short steps is another one where it is so much more, of the size of the signal
+SHORT = 1e-6
 AT = {name: column for column, (name, _) in enumerate(EVENT)}
 
 
@@ -116,16 +118,18 @@ def _extreme(primal: Primal, one: Extreme) -> Measure:
     found = extremes.apart(primal, extremes.candidates(one, steps, values))
     changes = [primal.functional() for _ in found]
     missed = [extremes.add_extreme(primal, one, *both) for both in zip(found, changes, strict=True)]
-    when = tuple(place.time(steps) for place in found)
+    when, located = tuple(place.time(steps) for place in found), extremes.value(one, found)
+    whole, size = extremes.further(one, located, primal.told[one]), float(np.abs(values).max(initial=0.0))
     return Measure(
-        value=extremes.value(one, found),
+        value=whole,
         changes=tuple(changes),
         until=max(when, default=primal.t_end),
         when=when,
         kinks=extremes.kinks(primal, found),
-        size=float(np.abs(values).max(initial=0.0)),
+        size=size,
         is_least=one.kind == "minimum",
         missed=tuple(lost for lost in missed if lost is not None),
+        unseen=float(abs(whole - located) > SHORT * size),
     )
 
 
@@ -147,6 +151,6 @@ def _jerk(primal: Primal, one: SquaredJerk, is_massless: bool) -> Measure:
     jerk.add_jerk(primal, one.signal, acceleration, into)
     missed = tuple(jerk.missed(primal, one.signal, acceleration, is_massless=is_massless))
     kinks = jerk.kinks(primal, acceleration)
-    value = primal.jerks[one.signal]
+    value = primal.told[one]
     unseen = abs(value - jerk.seen(primal.steps, acceleration)) / max(value, 1e-291)
     return Measure(value, (into,), primal.t_end, kinks=kinks, missed=missed, is_massless=is_massless, unseen=unseen)

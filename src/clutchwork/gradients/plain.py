@@ -24,10 +24,12 @@ from clutchwork.sweeps.parts import PARTS, squared_jerk
 
 if TYPE_CHECKING:
     from clutchwork.results.forms import Form
+    from clutchwork.sweeps.outputs import Output
 
 Array = NDArray[np.float64]
 
 IN_STEPS = (Extreme, SquaredJerk)
+NO_VALUES, FIRST = np.zeros(0), np.zeros(1, dtype=np.intp)
 
 
 # component, time, value, column
@@ -74,8 +76,8 @@ class PlainRuns:
         found: Array = self._call([system], columns, 0, times)[2][0]
         return found
 
-    def with_steps(self, system: bytes, forms: Mapping[str, Form]) -> tuple[Run, Steps, dict[str, float]]:
-        """One run, its steps as one with derivatives looks into them, and squared jerks by their signals.
+    def with_steps(self, system: bytes, forms: Mapping[str, Form]) -> tuple[Run, Steps, dict[Output, float]]:
+        """One run, its steps as one with derivatives looks into them, and what rows say: jerks, extremes in short steps.
 
         They end where signals of extremes bend or jump, which the rows at the very ends of its own steps see.
         """
@@ -92,8 +94,8 @@ class PlainRuns:
             accelerations = [own[0][one.signal](rows) for one in ones if isinstance(one, SquaredJerk)]
             split = resolved(split, [np.asarray(one, dtype=float)[split.rows] for one in accelerations])
             split = whole if split is known else split
-        jerks = {one.signal: _jerk(run, steps, own[0][one.signal]) for one in ones if isinstance(one, SquaredJerk)}
-        return run, whole.inside() if split is whole else split, jerks
+        told = {one: _told(one, run, steps, own[0][one.signal]) for one in ones}
+        return run, whole.inside() if split is whole else split, told
 
     def _call(self, systems: Sequence[bytes], columns: Sequence[int], parts: int, instants: Array | None = None) -> Any:
         count = len(systems)
@@ -178,7 +180,8 @@ class PlainRuns:
                 number = number_of(run.events, one, self.wanted.contacts)
                 found.append(float(run.events[number, 0]) if number >= 0 else np.nan)
             elif isinstance(one, Extreme):
-                found.append(_extreme(one, *split, forms) if reached else np.nan)
+                short = _told(one, run, steps, forms[one.signal]) if reached else np.nan
+                found.append(extremes.further(one, _extreme(one, *split, forms), short) if reached else np.nan)
             elif isinstance(one, SquaredJerk):
                 found.append(_jerk(run, steps, forms[one.signal]) if reached else np.nan)
             else:
@@ -214,6 +217,15 @@ def _rows_of(whole: Steps, own: Steps, rows: Array, rows_at: Callable[[Array], A
     made = whole.inside()
     grid = np.unique(made.times)
     return made.on(grid), rows_at(grid)
+
+
+def _told(one: Extreme | SquaredJerk, run: Run, steps: Steps, form: Form) -> float:
+    """A squared jerk, or an extreme in steps that are too short for runs with derivatives; NaN without any."""
+    if isinstance(one, SquaredJerk):
+        return _jerk(run, steps, form)
+    rows = steps.rows[~steps.is_long].ravel()
+    values = np.asarray(form(run.rows[rows]), dtype=float) if len(rows) else NO_VALUES
+    return float(one.reduced(values, FIRST)[0]) if len(values) else float("nan")
 
 
 def _jerk(run: Run, steps: Steps, form: Form) -> float:

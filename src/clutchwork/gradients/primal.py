@@ -16,6 +16,7 @@ from clutchwork.gradients.steps import Steps
 
 if TYPE_CHECKING:
     from clutchwork.results.forms import Form
+    from clutchwork.sweeps.outputs import Output
 
 Array = NDArray[np.float64]
 Places = NDArray[np.intp]
@@ -32,11 +33,13 @@ SMOOTH, EVENT, KNOT, KINK = range(4)
 
 @dataclass(frozen=True, eq=False)
 class Knots:
-    """Knots of signals whose times are free: when they are, and the derivatives of that by all numbers."""
+    """Knots of signals: when they are, and of those whose times are free the derivatives of that by all numbers."""
 
-    times: Array  # s
-    moved: Array  # a line for each knot
+    times: Array  # s, of those that move
+    moved: Array  # a line for each of them
     meets: Array  # s, where one meets another that moves otherwise, or an end of the run
+    known: Array  # s, of all
+
 
 
 @dataclass(frozen=True, eq=False)
@@ -49,7 +52,7 @@ class Primal:
     grazes: Array  # time, kind of guard, component, index, difference
     knots: Knots
     steps: Steps
-    jerks: Mapping[str, float]  # squared jerks of the run without derivatives, by the acceleration
+    told: Mapping[Output, float]  # what rows of the run without derivatives say: squared jerks, extremes in short steps
     forms: Mapping[str, Form]  # of the signals that are asked for
     bent: Mapping[str, Array]  # derivatives of signals in all rows by numbers that are in their forms
     numbers: int  # by which is differentiated
@@ -95,8 +98,10 @@ class Primal:
     @cached_property
     def between(self) -> tuple[Places, Places]:
         """What each step begins with: its kind, and the number of the instant that moves, -1 of a knot that stays."""
-        kinds, which = np.full(len(self.steps), SMOOTH, dtype=np.intp), np.full(len(self.steps), -1, dtype=np.intp)
-        # a knot that does not move is none of those below; guards are numbered behind the events
+        # at a knot that stays a signal may jump by nothing
+        kinds = np.where(_are_among(self.steps.begin, self.knots.known), KNOT, SMOOTH)
+        which = np.full(len(self.steps), -1, dtype=np.intp)
+        # guards are numbered behind the events
         guards = enumerate(self.grazes[:, [0, 1, 3]].tolist(), len(self.events))
         met = [
             (KNOT, time, -1) if what < 0 else (KINK, time, number)
@@ -112,6 +117,12 @@ class Primal:
         return kinds, which
 
     @cached_property
+    def stays(self) -> NDArray[np.bool_]:
+        """Whether each step begins with a knot that does not move."""
+        found: NDArray[np.bool_] = self.between[0] == KNOT
+        return found & ~_are_among(self.steps.begin, self.knots.times)
+
+    @cached_property
     def meets(self) -> list[tuple[float, int]]:
         """Instants [s] at which a knot meets one that moves differently, and the steps that begin there."""
         ends = np.r_[self.steps.begin, self.steps.end[-1:]]
@@ -123,3 +134,12 @@ class Primal:
         place = int(np.searchsorted(begins, time))
         near = [one for one in (place - 1, place) if 0 <= one < len(begins)]
         return min(near, key=lambda one: abs(float(begins[one]) - time)) if near else 0
+
+
+def _are_among(times: Array, others: Array) -> NDArray[np.bool_]:
+    """Whether each of some instants is one of others."""
+    known = np.r_[-np.inf, np.sort(others), np.inf]
+    place = np.searchsorted(known[:-1], times)
+    away = np.minimum(np.abs(known[place] - times), np.abs(times - known[np.maximum(place - 1, 0)]))
+    found: NDArray[np.bool_] = away <= SAME * (1.0 + np.abs(times))
+    return found

@@ -18,7 +18,7 @@ from numpy.typing import NDArray
 from clutchwork.assembly.wiring import wiring
 from clutchwork.base.classes import dataclass
 from clutchwork.gradients.extremes import reaching
-from clutchwork.gradients.steps import Steps
+from clutchwork.gradients.steps import LEAST, Steps
 from clutchwork.results.forms import LOCKED
 from clutchwork.sweeps.outputs import Extreme
 from clutchwork.sweeps.parts import PARTS
@@ -156,10 +156,10 @@ def _rough(one: Extreme, steps: Steps, values: Array, may_bend: Mask) -> Iterato
 
 def _places(steps: Steps, values: Array, step: int) -> Iterator[float]:
     """Instants that divide a step: where the polynomials of its neighbours intersect, else equal parts."""
-    meeting = _meeting(steps, values, step)
-    if meeting is None:
+    meeting, least = _meeting(steps, values, step), LEAST * (1.0 + abs(float(steps.begin[step]))) / steps.length[step]
+    if meeting is None and CUTS * least < 1.0:
         yield from np.arange(1, CUTS) / CUTS
-    elif SHORTEST < meeting < 1.0 - SHORTEST:
+    elif meeting is not None and max(SHORTEST, least) < meeting < 1.0 - max(SHORTEST, least):
         yield meeting
 
 

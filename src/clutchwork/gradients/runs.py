@@ -50,7 +50,7 @@ class RunPoint(NamedTuple):
     knots: Knots
     steps: Steps
     events: Array  # s, of a run without derivatives
-    jerks: Mapping[str, float]  # squared jerks of that run, by the acceleration
+    told: Mapping[Output, float]  # what rows of that run say: squared jerks, extremes in short steps
     grid: Array  # s, instants of rows
     notes: tuple[str, ...]  # on what is only just differentiable
 
@@ -124,9 +124,9 @@ class Runs:
         point = RunPoint(*known, NO_STEPS, np.zeros(0), {}, self.wanted.grid, ())
         if not self.plain.in_steps:
             return point
-        run, steps, jerks = self.plain.with_steps(point.system, self.signals.at(x))
+        run, steps, told = self.plain.with_steps(point.system, self.signals.at(x))
         self._refuse_stopped(run.status, run.detail)
-        return self._with_grid(point._replace(steps=steps, events=run.events[:, 0], jerks=jerks))
+        return self._with_grid(point._replace(steps=steps, events=run.events[:, 0], told=told))
 
     def forward(self, point: RunPoint) -> Run:
         """A run with derivatives by all numbers."""
@@ -213,7 +213,7 @@ class Runs:
             grazes=grazes,
             knots=point.knots,
             steps=point.steps.on(point.grid) if len(point.steps) else point.steps,
-            jerks=point.jerks,
+            told=point.told,
             forms=self.signals.at(point.x),
             bent=self.signals.bent(point.x, rows),
             numbers=len(point.x),

@@ -43,16 +43,22 @@ class Steps:
         jumps = np.append(True, first[1:] - first[:-1] != PARTS)[: len(first)]
         return cls(times[first], times[first + PARTS] - times[first], shares, rows, jumps)
 
+    @property
+    def is_long(self) -> NDArray[np.bool_]:
+        """Which of them a run with derivatives can look into."""
+        found: NDArray[np.bool_] = self.length > LEAST * (1.0 + np.abs(self.begin))
+        return found
+
     def long(self) -> Steps:
         """Those that a run with derivatives can look into."""
-        kept = np.flatnonzero(self.length > LEAST * (1.0 + np.abs(self.begin)))
+        kept = np.flatnonzero(self.is_long)
         jumps = np.diff(np.cumsum(self.jumps)[kept], prepend=0) > 0
         return Steps(self.begin[kept], self.length[kept], self.share[kept], self.rows[kept], jumps)
 
     def covering(self) -> Steps:
         """The same, each with the short ones before it, and behind it, from which nothing separates it."""
         found, ends = self.long(), self.end
-        is_long = self.length > LEAST * (1.0 + np.abs(self.begin))
+        is_long = self.is_long
         # where a row of steps begins between which nothing jumps
         chain, kept = np.cumsum(self.jumps), np.flatnonzero(is_long)
         begin, end = found.begin.copy(), found.end.copy()
