@@ -45,6 +45,8 @@ class Phase : public StepSize<typename Form::Scalar> {
   static constexpr int most_landings = 4;
   // of the tolerance: cuts come on top of steps, and there may be one every few steps
   static constexpr double most_cut_error = 0.3;
+  // the same of speeds without inertia, which follow from the others to their last digits
+  static constexpr double most_light_error = 1e-3;
   // of a step towards rest: where inside it is checked; how much of the tolerance an interpolant may miss inside
   static constexpr double inner = 0.7, most_inner_error = 10;
   // of the tolerance: an interpolant that says nothing of a slip
@@ -378,7 +380,13 @@ class Phase : public StepSize<typename Form::Scalar> {
   /// point. docs/theory/events.md, rule 7
   CLUTCHWORK_INLINE bool must_land(const Hit& hit) {
     if (hit.none() || landings_ >= most_landings || hit.s <= 0 || hit.s >= 1) return false;
-    const bool sure = error_until(taken_form(), taken_step(), hit.s) <= most_cut_error;
+    bool sure = error_until(taken_form(), taken_step(), hit.s) <= most_cut_error;
+    if constexpr (!Form::small) {
+      if (sure && any_massless(taken_form())) {
+        sure = massless_error(taken_form(), taken_step(), hit.s) <= most_light_error;
+        if constexpr (has_tangents<T>) varied_.forget_factor();
+      }
+    }
     if constexpr (Form::full) {
       // a pole is where it is, and at it nothing tells what the contact has held
       if (taken_form().ws.ratios.n > 0 && !keeps_ties(taken_form().ws.ratios)) return false;
