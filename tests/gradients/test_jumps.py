@@ -12,6 +12,7 @@ from scipy.linalg import expm
 import clutchwork as cw
 
 TIGHT: dict[str, Any] = {"rtol": 1e-10, "atol": 1e-12}
+SIDES = ("left", "right")
 
 
 def central(f: cw.Differentiable, step: float) -> np.ndarray:
@@ -154,3 +155,59 @@ def test_a_contact_that_breaks_away_from_nothing_beside_a_border() -> None:
     (begin, low), (end, high) = points[:2]
     assert f.gradient().values[0] == pytest.approx(begin - low * (end - begin) / (high - low), rel=1e-8)
     assert f.gradient().matrix[0, 0] == pytest.approx(-high * (end - begin) / (high - low) ** 2, rel=1e-6)
+
+
+def test_a_signal_that_jumps_by_nothing_has_both_sides_there() -> None:
+    """Its largest value is the larger one of both, each a number of its own."""
+    d = cw.Driveline("by nothing")
+    s = d.shaft("s", inertia=1.0)
+    d.add(cw.Torque("t", shaft=s, torque=cw.Table([[0.0, 0.0], [1.0, 5.0], [1.0, 5.0], [2.0, 0.0]])))
+    by = [f"t.torque.values[{place}]" for place in (1, 2, 3)]
+    f = cw.differentiable(d, 2.0, of=cw.maximum("t.torque"), by=by, **TIGHT)
+    assert f.gradient().matrix[0] == pytest.approx([0.0, np.nan, np.nan], abs=1e-9, nan_ok=True)
+    sides = [cw.differentiable(d, 2.0, of=cw.maximum("t.torque"), by=by, side=side, **TIGHT) for side in SIDES]
+    sides = [one.gradient().matrix[0] for one in sides]
+    np.testing.assert_allclose(sides, [[0.0, 0.0, 0.0], [0.0, 1.0, 1.0]], atol=1e-9)
+    # where it bends alone there is one derivative
+    d = cw.Driveline("bends")
+    d.add(cw.Torque("t", shaft=d.shaft("s", inertia=1.0), torque=cw.Table([[0.0, 0.0], [1.0, 5.0], [2.0, 0.0]])))
+    found = cw.differentiable(d, 2.0, of=cw.maximum("t.torque"), by=by, **TIGHT).gradient()
+    np.testing.assert_allclose(found.matrix[0], [0.0, 1.0, 0.0], atol=1e-9)
+
+
+def test_the_jerk_behind_a_jump_by_nothing() -> None:
+    """The acceleration that a jump of the signal makes is none of the jerk, and no bend that moves."""
+    # seed 160006
+    d = cw.Driveline("filtered")
+    speed = cw.Table([[0.0008, 0.0], [0.0008, 0.0], [0.01, 1.1], [0.024, 0.0]])
+    d.add(cw.PrescribedSpeed("motion", shaft=d.mass("m", mass=1.64), speed=speed, cutoff=1.12))
+    by = [f"motion.speed.values[{place}]" for place in (1, 2, 3)]
+    f = cw.differentiable(d, 0.05, of=cw.squared_jerk("m"), by=by, **TIGHT)
+    known = [(f(f.x0 + step)[0] - f(f.x0 - step)[0]) / 2e-5 for step in 1e-5 * np.eye(3)]
+    np.testing.assert_allclose(f.gradient().matrix[0], known, rtol=1e-5)
+
+
+def test_an_extreme_within_nanoseconds_has_its_value_and_no_derivatives() -> None:
+    d = cw.Driveline("nanosecond")
+    a = d.shaft("a", inertia=1e-9, speed=1e-3)
+    d.add(cw.Damper("damper", base=d.housing, follower=a, damping=100.0))
+    f = cw.differentiable(d, 0.1, of=cw.peak("damper.torque"), by="damper.damping", **TIGHT)
+    assert f(f.x0)[0] == pytest.approx(0.1, rel=1e-6)
+    with pytest.raises(cw.NoGradient, match=r"peak\(damper.torque\) is reached in motion that settles within a few nano"):
+        f.gradient()
+
+
+@pytest.mark.parametrize("side", SIDES)
+def test_a_flow_that_is_zero_for_a_while_has_both_sides(side: str) -> None:
+    # seed 160227
+    d = cw.Driveline("oil")
+    d.shaft("s", inertia=1.0)
+    plates, sump = d.thermal("plates", capacity=50.0, temperature=330.0), d.ambient("sump", temperature=290.0)
+    d.add(cw.OilFlow("oil", hot=plates, inlet=sump, flow=cw.Ramp(height=0.01, duration=0.1, start=0.2)))
+    f = cw.differentiable(d, 0.4, of=["plates.heat"], by="oil.flow.offset", **TIGHT)
+    with pytest.raises(cw.NoGradient, match=r"oil\.flow is 0 from 0 to 0\.2 s, where a little more"):
+        f.gradient()
+    step = {"left": -1e-7, "right": 1e-7}[side]
+    known = (f(f.x0 + step)[0] - f(f.x0)[0]) / step
+    found = cw.differentiable(d, 0.4, of=["plates.heat"], by="oil.flow.offset", side=side, **TIGHT).gradient()
+    assert found.matrix[0, 0] == pytest.approx(known, rel=1e-4)

@@ -72,6 +72,7 @@ class Spec:
     otherwise: float | None = None  # of a signal: its value when neither it nor its alternative is given
     draws: bool = False  # of a signal: its reader takes a flow from a process that gathers, by the hook `drawn`
     presses: bool = False  # of a signal: below zero it counts as zero, so that a constant below zero never acts
+    clips: bool = False  # of a signal: below zero it counts as zero, which is no mistake
     flag: bool = False  # true or false in Python, 1 or 0 in the core
     fixed: bool = False  # says how many states there are: it stays while a run goes on
     whole: bool = False  # a whole number
@@ -232,6 +233,7 @@ def signal(
     instead_of: str = "",
     otherwise: float | None = None,
     presses: bool = False,
+    clips: bool = False,
     draws: bool = False,
     example: float | None = None,
 ) -> Any:
@@ -245,13 +247,14 @@ def signal(
 
     With `instead_of` it is another way to give the signal of that name: exactly one of them is given, or
     none where that signal has a value `otherwise`. With `presses` a constant below zero is warned of; it stands in
-    pictures, and so does a signal with a `gain`, the units of the parameter that multiplies it. One that `draws` is a
-    port of a process: where a process that `gathers` gives it, that loses the flow which the hook `drawn` says.
+    pictures, and so does a signal with a `gain`, the units of the parameter that multiplies it. One that `clips` counts
+    as zero below it. One that `draws` is a port of a process: where a process that `gathers` gives it, that loses the
+    flow which the hook `drawn` says.
     """
     what = "alternative" if instead_of else "signal"
     ranges: dict[str, Any] = {"above": above, "at_least": at_least, "below": below, "at_most": at_most}
     ways: dict[str, Any] = {"gain": gain, "instead_of": instead_of, "otherwise": otherwise, "presses": presses}
-    ways["draws"] = draws
+    ways |= {"draws": draws, "clips": clips}
     return _field(Spec(what, unit, doc, default is None, **ranges, **ways, units=units, example=example), default)
 
 

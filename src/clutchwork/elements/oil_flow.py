@@ -15,5 +15,5 @@ class OilFlow(Component):
 
     hot: ThermalNode = port("node that the oil cools", domain="thermal")
     inlet: ThermalNode = port("node that the oil comes from and carries the heat to", domain="thermal")
-    flow: SignalLike = signal("kg/s", "flow of oil")
+    flow: SignalLike = signal("kg/s", "flow of oil; below zero counts as zero", clips=True)
     heat_capacity: float = param("J/(kg K)", "specific heat capacity of the oil", default=2000.0, above=0.0)

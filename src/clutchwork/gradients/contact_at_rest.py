@@ -1,4 +1,4 @@
-"""Loads that are exactly zero for a while and may be more: a little more presses, a little less does not."""
+"""Signals that are exactly zero for a while and count as zero below it: a little more of them acts, less does not."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ ROUND_OFF = 1e-15
 def unpressed(
     chart: Chart, words: Array, slopes: Slopes, names: Sequence[str], begin: float, end: float
 ) -> Iterator[tuple[float, str, Mask]]:
-    """Intervals of zero clamp load: their start [s], a message, and the numbers that would raise the load there.
+    """Intervals in which they are zero: their start [s], a message, and the numbers that would raise them there.
 
     Parameters: begin and end, of the run [s].
     """
@@ -45,7 +45,7 @@ def unpressed(
                 since, until = max(since, begin), min(until, end)
                 free = ", ".join(names[column] for column in np.flatnonzero(moved).tolist())
                 what = f"{system.inputs[number].name} is 0 from {since:g} to {until:g} s"
-                yield since, f"{what}, where a little more of {free} presses and a little less does not", moved
+                yield since, f"{what}, where a little more of {free} acts and a little less does not", moved
         yield from _at_knots(system, number, pieces, bounds, slopes, first + PIECE * start, (begin, end))
 
 
@@ -94,12 +94,12 @@ def _begins(piece: Array, slopes: Slopes, first: int) -> Array:
 
 @memoize
 def pressing(system: System) -> tuple[int, ...]:
-    """Numbers of the signals that press contacts."""
+    """Numbers of the signals that press contacts, or count as zero below zero."""
     known = {item.name: number for number, item in enumerate(system.inputs)}
     found = (
         f"{contact.name}.{name}"
-        for contact in system.contacts
+        for contact in (*system.contacts, *system.flows, *system.elements)
         for names, spec in inputs(type(contact))
-        for name in (names if spec.presses or spec.gain else ())
+        for name in (names if spec.presses or spec.gain or spec.clips else ())
     )
     return tuple(known[name] for name in found if name in known)
