@@ -4,7 +4,6 @@
 #include <clutchwork/motion/dynamics.hpp>
 #include <clutchwork/motion/form.hpp>
 #include <clutchwork/run/integrator/memory.hpp>
-#include <clutchwork/run/step.hpp>
 #include <clutchwork/run/watch.hpp>
 #include <clutchwork/workspace.hpp>
 
@@ -173,17 +172,6 @@ template <class Form, class T = typename Form::Scalar>
     for (int i = 0; i < nz; ++i) y[i] -= b[i];
     return observe(form, t, y, d);
   }
-}
-
-/// What an interpolant misses of the speeds without inertia at the share s of a step, in units of the tolerance.
-template <class Form, class T = typename Form::Scalar>
-[[gnu::noinline]] double massless_error(Form& form, Step<Form>& step, double s) {
-  Workspace<T>& ws = form.ws;
-  T *y = step.point(), *missing = step.u();
-  interpolate(form, step, s, y);
-  evaluate(form, step.t + s * step.h, y, missing);
-  for (int i = 0; i < form.n(); ++i) missing[i] = i < form.nz() && is_massless(ws, i) ? missing[i] : T(0);
-  return solve_held(form, missing) ? error_norm(form, missing, step.y0(), y) : infinity;
 }
 
 /// Rates of change of the speeds without inertia along the motion, of which d has the others and those of the states:

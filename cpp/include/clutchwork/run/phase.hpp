@@ -19,6 +19,7 @@
 #include <clutchwork/run/snapshot.hpp>
 #include <clutchwork/run/step.hpp>
 #include <clutchwork/run/step_calls.hpp>
+#include <clutchwork/run/step_error.hpp>
 #include <clutchwork/run/step_size.hpp>
 #include <clutchwork/run/stiffness.hpp>
 #include <clutchwork/run/variation.hpp>

@@ -74,6 +74,23 @@ double before_lost_tie(Form& form, Step<Form>& step, double s, const Snapshot<T>
   return s;
 }
 
+/// Of an instant at which nothing is left of a tie whose ratio moves on, as one that leaves zero: right behind it, where
+/// it holds again. docs/theory/varying-ratios.md (22)
+template <class Form, class T = typename Form::Scalar>
+void behind_lost_tie(Form& form, Step<Form>& step, const Snapshot<T>& shot) {
+  constexpr double near = 1e-9;
+  Workspace<T>& ws = form.ws;
+  const Ratios<T>& r = ws.ratios;
+  if (r.n == 0 || step.h != 0) return;
+  bool moves = false;
+  for (int t = 0; t < r.ties && r.tie[t] >= 0; ++t)
+    moves = moves || (value(r.plain.gram[t * r.ties + t]) == 0 && value(r.plain.slope[r.tie[t]]) != 0);
+  if (!moves) return;
+  const double later = step.t + near * larger(1e-2, abs(step.t));
+  inputs_at(ws, later);
+  observe(form, later, shot.y, shot.d);
+}
+
 /// State, torques of all directions and accelerations at s; output torques go to ws.out.torque.
 template <class Form, class T = typename Form::Scalar>
 Snapshot<T> take_snapshot(Form& form, Step<Form>& step, double s) {
@@ -82,7 +99,7 @@ Snapshot<T> take_snapshot(Form& form, Step<Form>& step, double s) {
   const int nv = int(sys.speeds), ne = int(sys.elements), nc = int(sys.contacts);
   Snapshot<T> shot{step.point(), step.slope(), ws.observed.rate, ws.out.v, ws.out.dv};
   look_at(form, step, s, shot);
-  if constexpr (Form::full) s = before_lost_tie(form, step, s, shot);
+  if constexpr (Form::full) s = before_lost_tie(form, step, s, shot), behind_lost_tie(form, step, shot);
   const double t = step.t + s * step.h;
   if constexpr (Form::full) {
     // an interpolant keeps the ties of transmissions less exactly than the ends of a step do
