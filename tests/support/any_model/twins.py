@@ -101,7 +101,9 @@ def _part(whole: Plain, share: float) -> Plain:
 
 def scaled(made: Plain, rng: Rng) -> Plain | None:
     """All that has a mass in its unit times the power of a factor: inertias, torques, stiffnesses, heat."""
-    # a dog clutch of a gearbox has a stiffness of its own
+    # oil that fills a volume or a pump has a stiffness and a vacuum of its own, a dog clutch of a gearbox a stiffness
+    if any(one["type"] in ("pump", "valve_body") for one in made["element"]):
+        return None
     boxes = [element for element in driveline(made).elements if element.kind == "transmission"]
     if any(getattr(part, "kind", "") in ("dog_clutch", "synchroniser") for box in boxes for part in box.parts()):
         return None
