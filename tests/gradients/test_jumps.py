@@ -193,7 +193,7 @@ def test_an_extreme_within_nanoseconds_has_its_value_and_no_derivatives() -> Non
     d.add(cw.Damper("damper", base=d.housing, follower=a, damping=100.0))
     f = cw.differentiable(d, 0.1, of=cw.peak("damper.torque"), by="damper.damping", **TIGHT)
     assert f(f.x0)[0] == pytest.approx(0.1, rel=1e-6)
-    with pytest.raises(cw.NoGradient, match=r"peak\(damper.torque\) is reached in motion that settles within a few nano"):
+    with pytest.raises(cw.NoGradient, match=r"peak\(damper.torque\) is reached in motion that settles"):
         f.gradient()
 
 

@@ -403,8 +403,7 @@ class Law(Declared):
     A law that sticks is set-valued: it locks exactly. One that does not is compliant: its torque is a function of
     slip and of its own states, and it never locks. Some fields have a meaning of their own wherever a law has them:
     `static` and `kinetic`, the coefficients at rest and while it slips, numbers or tables; `band`, the slip [rad/s] up
-    to which it sticks, which widens the tolerance of its contact; `bends`, whether it bends within steps, at slips that
-    have no event; `extrapolation`, what tables do beyond their ends.
+    to which it sticks, which widens the tolerance of its contact; `extrapolation`, what tables do beyond their ends.
     """
 
     # set by @component
@@ -419,8 +418,12 @@ class Law(Declared):
     static = cast("Coefficients | None", None)
     kinetic = cast("Coefficients | None", None)
     band = 0.0
-    bends = False
     extrapolation = "nearest"
+
+    @property
+    def bends(self) -> bool:
+        """Whether it bends within steps, at slips that have no event."""
+        return False
 
     def problems(self) -> Found:
         """What the bounds of single values cannot say, as (quantity, what is wrong, remedy)."""

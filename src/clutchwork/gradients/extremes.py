@@ -316,12 +316,11 @@ class Sides(NamedTuple):
     @classmethod
     def of(cls, steps: Steps, end: int, before: Array, behind: Array) -> Sides:
         """Those at the begin of a step, from the values in the rows of the step before and of its own."""
-        gap = float((steps.share[end - 1, -1] - 1.0) * steps.length[end - 1]), float(
-            steps.share[end, 0] * steps.length[end]
-        )
+        first = float((steps.share[end - 1, -1] - 1.0) * steps.length[end - 1])
+        last = float(steps.share[end, 0] * steps.length[end])
         values = float(steps.right[end - 1] @ before), float(steps.left[end] @ behind)
         slopes = float(steps.right_slope[end - 1] @ before), float(steps.left_slope[end] @ behind)
-        return cls(*values, *slopes, gap)
+        return cls(*values, *slopes, (first, last))
 
     @property
     def differ(self) -> bool:

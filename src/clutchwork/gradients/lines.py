@@ -86,7 +86,8 @@ def _nothing(name: str, one: Measure, t_end: float) -> str:
         return f"{name} does not happen before {t_end:g} s; take one that does, or a later end time"
     if one.unseen > UNSEEN:
         what = f"{name} is reached in" if one.when else f"{min(one.unseen, 1.0):.2%} of {name} is from"
-        return f"{what} motion that settles within a few nanoseconds, which has no derivatives; give what is so stiff more inertia, or start it where it has settled"
+        remedy = "give what is so stiff more inertia, or start it where it has settled"
+        return f"{what} motion that settles within a few nanoseconds, which has no derivatives; {remedy}"
     return ""
 
 

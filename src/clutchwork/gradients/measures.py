@@ -119,7 +119,7 @@ def _extreme(primal: Primal, one: Extreme) -> Measure:
     changes = [primal.functional() for _ in found]
     missed = [extremes.add_extreme(primal, one, *both) for both in zip(found, changes, strict=True)]
     when, located = tuple(place.time(steps) for place in found), extremes.value(one, found)
-    whole, size = extremes.further(one, located, primal.told[one]), float(np.abs(values).max(initial=0.0))
+    whole, size = extremes.further(one, located, primal.by_rows[one]), float(np.abs(values).max(initial=0.0))
     return Measure(
         value=whole,
         changes=tuple(changes),
@@ -151,6 +151,6 @@ def _jerk(primal: Primal, one: SquaredJerk, is_massless: bool) -> Measure:
     jerk.add_jerk(primal, one.signal, acceleration, into)
     missed = tuple(jerk.missed(primal, one.signal, acceleration, is_massless=is_massless))
     kinks = jerk.kinks(primal, acceleration)
-    value = primal.told[one]
+    value = primal.by_rows[one]
     unseen = abs(value - jerk.seen(primal.steps, acceleration)) / max(value, 1e-291)
     return Measure(value, (into,), primal.t_end, kinks=kinks, missed=missed, is_massless=is_massless, unseen=unseen)

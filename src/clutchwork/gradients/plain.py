@@ -77,7 +77,7 @@ class PlainRuns:
         return found
 
     def with_steps(self, system: bytes, forms: Mapping[str, Form]) -> tuple[Run, Steps, dict[Output, float]]:
-        """One run, its steps as one with derivatives looks into them, and what rows say: jerks, extremes in short steps.
+        """One run, its steps as one with derivatives looks into them, and jerks and extremes in short steps by rows.
 
         They end where signals of extremes bend or jump, which the rows at the very ends of its own steps see.
         """
@@ -94,8 +94,8 @@ class PlainRuns:
             accelerations = [own[0][one.signal](rows) for one in ones if isinstance(one, SquaredJerk)]
             split = resolved(split, [np.asarray(one, dtype=float)[split.rows] for one in accelerations])
             split = whole if split is known else split
-        told = {one: _told(one, run, steps, own[0][one.signal]) for one in ones}
-        return run, whole.inside() if split is whole else split, told
+        by_rows: dict[Output, float] = {one: _by_rows(one, run, steps, own[0][one.signal]) for one in ones}
+        return run, whole.inside() if split is whole else split, by_rows
 
     def _call(self, systems: Sequence[bytes], columns: Sequence[int], parts: int, instants: Array | None = None) -> Any:
         count = len(systems)
@@ -180,7 +180,7 @@ class PlainRuns:
                 number = number_of(run.events, one, self.wanted.contacts)
                 found.append(float(run.events[number, 0]) if number >= 0 else np.nan)
             elif isinstance(one, Extreme):
-                short = _told(one, run, steps, forms[one.signal]) if reached else np.nan
+                short = _by_rows(one, run, steps, forms[one.signal]) if reached else np.nan
                 found.append(extremes.further(one, _extreme(one, *split, forms), short) if reached else np.nan)
             elif isinstance(one, SquaredJerk):
                 found.append(_jerk(run, steps, forms[one.signal]) if reached else np.nan)
@@ -219,7 +219,7 @@ def _rows_of(whole: Steps, own: Steps, rows: Array, rows_at: Callable[[Array], A
     return made.on(grid), rows_at(grid)
 
 
-def _told(one: Extreme | SquaredJerk, run: Run, steps: Steps, form: Form) -> float:
+def _by_rows(one: Extreme | SquaredJerk, run: Run, steps: Steps, form: Form) -> float:
     """A squared jerk, or an extreme in steps that are too short for runs with derivatives; NaN without any."""
     if isinstance(one, SquaredJerk):
         return _jerk(run, steps, form)

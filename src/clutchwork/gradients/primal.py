@@ -41,7 +41,6 @@ class Knots:
     known: Array  # s, of all
 
 
-
 @dataclass(frozen=True, eq=False)
 class Primal:
     """Rows and events of a run at a point."""
@@ -52,7 +51,7 @@ class Primal:
     grazes: Array  # time, kind of guard, component, index, difference
     knots: Knots
     steps: Steps
-    told: Mapping[Output, float]  # what rows of the run without derivatives say: squared jerks, extremes in short steps
+    by_rows: Mapping[Output, float]  # what a run without derivatives says: squared jerks, extremes in short steps
     forms: Mapping[str, Form]  # of the signals that are asked for
     bent: Mapping[str, Array]  # derivatives of signals in all rows by numbers that are in their forms
     numbers: int  # by which is differentiated

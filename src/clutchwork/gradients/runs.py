@@ -26,7 +26,7 @@ from clutchwork.results.forms import all_reads
 from clutchwork.results.gradient import NoGradient
 from clutchwork.run.simulation import told
 from clutchwork.sweeps.batch import CoreOutputs
-from clutchwork.sweeps.outputs import Extreme
+from clutchwork.sweeps.outputs import Extreme, Output
 
 Array = NDArray[np.float64]
 
@@ -50,7 +50,7 @@ class RunPoint(NamedTuple):
     knots: Knots
     steps: Steps
     events: Array  # s, of a run without derivatives
-    told: Mapping[Output, float]  # what rows of that run say: squared jerks, extremes in short steps
+    by_rows: Mapping[Output, float]  # what rows of that run say: squared jerks, extremes in short steps
     grid: Array  # s, instants of rows
     notes: tuple[str, ...]  # on what is only just differentiable
 
@@ -124,9 +124,9 @@ class Runs:
         point = RunPoint(*known, NO_STEPS, np.zeros(0), {}, self.wanted.grid, ())
         if not self.plain.in_steps:
             return point
-        run, steps, told = self.plain.with_steps(point.system, self.signals.at(x))
+        run, steps, by_rows = self.plain.with_steps(point.system, self.signals.at(x))
         self._refuse_stopped(run.status, run.detail)
-        return self._with_grid(point._replace(steps=steps, events=run.events[:, 0], told=told))
+        return self._with_grid(point._replace(steps=steps, events=run.events[:, 0], by_rows=by_rows))
 
     def forward(self, point: RunPoint) -> Run:
         """A run with derivatives by all numbers."""
@@ -213,7 +213,7 @@ class Runs:
             grazes=grazes,
             knots=point.knots,
             steps=point.steps.on(point.grid) if len(point.steps) else point.steps,
-            told=point.told,
+            by_rows=point.by_rows,
             forms=self.signals.at(point.x),
             bent=self.signals.bent(point.x, rows),
             numbers=len(point.x),

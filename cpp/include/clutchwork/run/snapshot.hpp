@@ -74,8 +74,8 @@ double before_lost_tie(Form& form, Step<Form>& step, double s, const Snapshot<T>
   return s;
 }
 
-/// Of an instant at which nothing is left of a tie whose ratio moves on, as one that leaves zero: right behind it, where
-/// it holds again. docs/theory/varying-ratios.md (22)
+/// Of an instant at which nothing is left of a tie whose ratio moves on, as one that leaves zero: right behind it,
+/// where it holds again. docs/theory/varying-ratios.md (22)
 template <class Form, class T = typename Form::Scalar>
 void behind_lost_tie(Form& form, Step<Form>& step, const Snapshot<T>& shot) {
   constexpr double near = 1e-9;
