@@ -205,6 +205,9 @@ MENDED: dict[str, list[int]] = {
     "ties of a step that led to rest": [22003549],
     "a ratio that would lose a light shaft far ahead": [21109558],
     "a freewheel between the shafts of a joint whose ratio passes one": [19030625],
+    "an event on the interpolant of a shaft without inertia": [36004377],
+    "a row at a ratio that leaves zero": [36006385, 35010953, 37012072],
+    "an impulse at a dead point that counted as one of the start": [37005603],
 }
 
 

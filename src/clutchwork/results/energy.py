@@ -11,7 +11,7 @@ counts as heat too: it is small, at most coefficient times deflection times load
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from dataclasses import field
 from typing import Any
 
@@ -23,7 +23,7 @@ from clutchwork.base import columns, dataclass, html
 from clutchwork.base.extras import need
 from clutchwork.declare.calls import explained_methods
 from clutchwork.declare.node import Component, Work
-from clutchwork.results.events import Events
+from clutchwork.results.events import Event, Events
 
 
 @explained_methods("run.energy")
@@ -118,8 +118,11 @@ class EnergyBalance:
         return lines
 
 
-def balance(wiring: Wiring, rows: NDArray[np.float64], events: Events) -> EnergyBalance:
-    """Balance between the first and the last output row."""
+def balance(wiring: Wiring, rows: NDArray[np.float64], events: Events, start: float) -> EnergyBalance:
+    """Balance between the first and the last output row.
+
+    Parameters: start, of the run [s].
+    """
     ends = rows[[0, -1]]
     sources, heat, springs = dict[str, float](), dict[str, float](), dict[str, float]()
     drawn = {branch.name: energy for branch, energy in _works(wiring, ends, "supply_energy", wiring.supplies)}
@@ -142,7 +145,7 @@ def balance(wiring: Wiring, rows: NDArray[np.float64], events: Events) -> Energy
     sources |= {branch.name: work for branch, work in _works(wiring, ends, "prescribed_work", wiring.motions)}
     heat |= {branch.name: 0.0 - work for branch, work in _works(wiring, ends, "contact_work", wiring.contacts)}
     # a row at time zero lies behind the impulses of the start, whose work it holds already
-    lost = _impulses(events.at_start())
+    lost = _impulses([event for event in events.at_start() if event.time <= start])
     before = ends[0, wiring.columns["contact_work"]] if lost else np.zeros(len(wiring.contacts))
     for branch, work in zip(wiring.contacts, before, strict=True):
         heat[branch.name] -= float(work)
@@ -183,7 +186,7 @@ def _thermal(wiring: Wiring, ends: NDArray[np.float64], lost: float) -> dict[str
     return {name: float(ends[1, column] - first[column]) for name, column in columns.items()}
 
 
-def _impulses(events: Events) -> float:
+def _impulses(events: Iterable[Event]) -> float:
     """Energy lost where speeds jumped; contacts that change in one instant share one impulse."""
     jumps = {(e.time, e.energy_before, e.energy_after) for e in events}
     return sum(before - after for _, before, after in jumps)

@@ -144,8 +144,8 @@ class Events(Sequence[Event]):
         return Events(chosen, self._contacts)
 
     def at_start(self) -> Events:
-        """Impulses at the very start."""
-        chosen = [event for event in self if event.cause == "impulse"]
+        """Impulses at the very start: with the first of all events, if any."""
+        chosen = [event for event in self if event.cause == "impulse" and event.time == self[0].time]
         return Events(chosen, self._contacts)
 
     @property

@@ -82,7 +82,7 @@ def flows(run: Recorded, begin: float, end: float) -> Flows:
         first = False
     found = dict(zip(joints, total.tolist(), strict=True))
     stored = dict(enumerate(kinetic.tolist()))
-    return Flows(begin, end, balance(wiring, ends, Events(window)), found, stored)
+    return Flows(begin, end, balance(wiring, ends, Events(window), run.options.t_start), found, stored)
 
 
 def _gauss(steps: Array, begin: float, end: float, row_size: int) -> Iterator[tuple[Array, Array]]:

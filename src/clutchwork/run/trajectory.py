@@ -106,7 +106,7 @@ class Trajectory(Exports):
         from clutchwork.results.energy import balance
 
         window = [e for e in self.events if self.time[0] <= e.time <= self.time[-1]]
-        return balance(self.wiring, self.rows, Events(window))
+        return balance(self.wiring, self.rows, Events(window), self.options.t_start)
 
     @explained("run.gears", name="'gearbox'")
     def gears(self, name: str = "") -> GearTable:

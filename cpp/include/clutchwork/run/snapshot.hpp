@@ -83,8 +83,12 @@ void behind_lost_tie(Form& form, Step<Form>& step, const Snapshot<T>& shot) {
   const Ratios<T>& r = ws.ratios;
   if (r.n == 0 || step.h != 0) return;
   bool moves = false;
-  for (int t = 0; t < r.ties && r.tie[t] >= 0; ++t)
-    moves = moves || (value(r.plain.gram[t * r.ties + t]) == 0 && value(r.plain.slope[r.tie[t]]) != 0);
+  for (int t = 0; t < r.ties && r.tie[t] >= 0; ++t) {
+    const int k = r.place[2 * r.tie[t]];
+    // what turns jams there
+    const bool rests = abs(value(ws.full.plain.rate[k + 1])) <= 10 * ws.guard.zero;
+    moves = moves || (rests && value(r.plain.gram[t * r.ties + t]) == 0 && value(r.plain.slope[r.tie[t]]) != 0);
+  }
   if (!moves) return;
   const double later = step.t + near * larger(1e-2, abs(step.t));
   inputs_at(ws, later);
