@@ -119,28 +119,36 @@ def _near(one: Extreme, steps: Steps, values: Array) -> Iterator[CandidateSteps]
     # between samples a polynomial rises by less than an eighth of its second difference
     rise = np.abs(np.diff(samples, 2)).max(axis=1, initial=0.0) / 8
     for sign in SIGNS[one.kind]:
-        upper = (sign * samples).max(axis=1)
-        upper[_onto_plateaus(steps, sign * values, sign * samples, _allowed(values))] = -np.inf
-        best = float(upper.max(initial=-np.inf))
-        near = np.flatnonzero(upper + rise >= best - _allowed(values))
-        near, tops = _without_hillsides(near, sign * coefficients, sign * samples, _allowed(values))
+        signed, allowed = sign * samples, _allowed(values)
+        upper = signed.max(axis=1)
+        while True:
+            best = float(upper.max(initial=-np.inf))
+            near = np.flatnonzero(upper + rise >= best - allowed)
+            above = _above_plateaus(steps, near, sign * values, signed, allowed)
+            if not len(above):
+                break
+            upper[above] = -np.inf
+        near, tops = _without_hillsides(near, sign * coefficients, signed, allowed)
         if len(near) > MOST_EQUAL:
             first = near[np.argsort(-upper[near], kind="stable")][:MOST_EQUAL]
             # of a plateau its ends are among those that are looked at
-            level = near[(sign * samples[near]).min(axis=1) >= best - LEVEL * _allowed(values)]
+            level = near[signed[near].min(axis=1) >= best - LEVEL * allowed]
             ends = level if len(level) else near
             near = np.unique([*first, ends[0], ends[-1]])
         yield CandidateSteps(sign, coefficients, near, tops, best, float((upper + rise).max(initial=-np.inf)))
 
 
-def _onto_plateaus(steps: Steps, values: Array, samples: Array, allowed: float) -> NDArray[np.bool_]:
-    """Steps beside a plateau whose polynomials are above it, while their rows are not: that is from a bend inside."""
-    highs, rows = samples.max(axis=1), values.max(axis=1)
-    level, found = np.ptp(samples, axis=1) <= LEVEL * allowed, np.zeros(len(steps), dtype=bool)
-    for own, near in ((slice(-1), slice(1, None)), (slice(1, None), slice(-1))):
-        above = (rows[own] <= highs[near] + LEVEL * allowed) & (highs[own] > highs[near] + allowed)
-        found[own] |= level[near] & above & ~steps.jumps[1:]
-    return found
+def _above_plateaus(steps: Steps, near: Places, values: Array, samples: Array, allowed: float) -> Places:
+    """Those beside a plateau whose polynomials are above it, while their rows are not: that is from a bend inside."""
+    found = [NOWHERE]
+    for side in (-1, 1):
+        own = near[(near + side >= 0) & (near + side < len(steps))]
+        own = own[~steps.jumps[np.maximum(own, own + side)]]
+        other, top = samples[own + side], samples[own].max(axis=1, initial=-np.inf)
+        high, rows = other.max(axis=1, initial=-np.inf), values[own].max(axis=1, initial=-np.inf)
+        level = np.abs(other - high[:, None]).max(axis=1, initial=0.0) <= LEVEL * allowed
+        found.append(own[level & (rows <= high + LEVEL * allowed) & (top > high + allowed)])
+    return np.concatenate(found)
 
 
 def _without_hillsides(near: Places, coefficients: Array, samples: Array, allowed: float) -> tuple[Places, Places]:
