@@ -41,6 +41,7 @@ EVENTS = {
     "after 25 time constants a decay has ended": "* s > 25 ?",
     "Above 0.3 of the tolerance": "most_cut_error = 0.3",
     "repeated at most four times to land": "most_landings = 4",
+    "may be $10^{-3}$ of the tolerance": "most_light_error = 1e-3",
     r"loses more than half of its slip is checked at $\theta = 0.7$ in the same way": "inner = 0.7,",
     "above ten times the tolerance": "most_inner_error = 10",
     "that of $10^{-9}$ s later": "T(0)) * T(1e-9)",
