@@ -15,7 +15,7 @@ from clutchwork.declare.layout import DONE
 from clutchwork.gradients import extremes
 from clutchwork.gradients.measures import number_of
 from clutchwork.gradients.refined import Seen, WithinSteps, refined
-from clutchwork.gradients.resolved import around_tops, resolved
+from clutchwork.gradients.resolved import SHARP, STILL_SHARP, around_tops, resolved
 from clutchwork.gradients.steps import NO_STEPS, Steps
 from clutchwork.results.forms import all_reads
 from clutchwork.sweeps.batch import CoreOutputs
@@ -164,8 +164,12 @@ class PlainRuns:
 
         split = None if self.inside is None else refined(steps, ones, partial(at_bends, self.inside))
         found = (steps, rows) if split is None else on(split)
-        made = around_tops(found[0], list(zip(ones, values(*found), strict=True)))
-        return found if made is found[0] else on(made)
+        for sharp in (SHARP, STILL_SHARP, STILL_SHARP):
+            made = around_tops(found[0], list(zip(ones, values(*found), strict=True)), sharp)
+            if made is found[0]:
+                break
+            found = on(made)
+        return found
 
     def _of(
         self, run: Run, forms: Mapping[str, Form], seen: Sequence[int], rows_at: Callable[[Array], Array]

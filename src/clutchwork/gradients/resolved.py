@@ -21,8 +21,9 @@ Array = NDArray[np.float64]
 
 # the last coefficient of the slope of an acceleration, of the largest slope in the run, from which on a step is split
 BENT = 1e-3
-# that of a signal with its extreme inside of a step, of its largest size, and how far around it the step is split
-SHARP, AROUND = 1e-7, 1 / 16
+# that of a signal with its extreme inside of a step, of its largest size, and how far around it the step is split; and
+# from which on what was split is so again
+SHARP, AROUND, STILL_SHARP = 1e-7, 1 / 16, 1e-5
 
 
 def resolved(steps: Steps, accelerations: Sequence[Array]) -> Steps:
@@ -37,16 +38,16 @@ def resolved(steps: Steps, accelerations: Sequence[Array]) -> Steps:
     return _split(steps, {step: set((np.arange(1, PARTS) / PARTS).tolist()) for step in np.flatnonzero(rough).tolist()})
 
 
-def around_tops(steps: Steps, extremes: Sequence[tuple[Extreme, Array]]) -> Steps:
+def around_tops(steps: Steps, extremes: Sequence[tuple[Extreme, Array]], sharp: float = SHARP) -> Steps:
     """The steps with an extreme inside split so that it is in a short part, where polynomials miss its instant.
 
-    Parameters: values in the rows of each step, a line for each step.
+    Parameters: values in the rows of each step, a line for each step; sharp, from which coefficient on.
     """
     cuts = dict[int, set[float]]()
     for one, values in extremes:
         size = float(np.abs(values).max(initial=0.0))
         for top in candidates(one, steps, values):
-            if 0.0 < top.share < 1.0 and top.rough * steps.length[top.step] > SHARP * size:
+            if 0.0 < top.share < 1.0 and top.rough * steps.length[top.step] > sharp * size:
                 cuts.setdefault(top.step, set()).update((top.share - AROUND, top.share + AROUND))
     return _split(steps, cuts)
 
