@@ -91,7 +91,7 @@ EDITS = {
     ),
     "a signal that the declaration has not": (
         f"{ELEMENTS}/oil_flow.py",
-        '    flow: SignalLike = signal("kg/s", "flow of oil")\n',
+        '    flow: SignalLike = signal("kg/s", "flow of oil; below zero counts as zero", clips=True)\n',
         "",
         (GENERATOR, "oil_flow.hpp: Input::flow is not an input", f"{ELEMENTS}/oil_flow.py, which has hot, inlet"),
     ),
