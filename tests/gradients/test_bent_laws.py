@@ -38,6 +38,17 @@ def test_a_peak_at_a_bend_of_a_formula(seed, rtol):
     assert np.all(np.abs(found[:2]) <= 10 * rtol * FORCE * most + ALLOWED)
 
 
+def test_a_smallest_torque_at_a_bend_of_a_formula_and_a_product_with_it():
+    friction = "max(0.01, most - max(up*(at - v), down*(v - at)))"
+    system = braked(friction, 1.0, most=0.4, up=0.02, down=0.03, at=5.0)
+    of = {"least": cw.minimum("brake.torque"), "peak": cw.peak("brake.torque")}
+    f = cw.differentiable(system, 4.0, of=of, by=["s.speed", "brake.gain"], rtol=1e-8)
+    # it brakes against the speed
+    np.testing.assert_allclose(f(f.x0), [-FORCE * 0.4, FORCE * 0.4], rtol=1e-7)
+    np.testing.assert_allclose(f.gradient().matrix[:, 1], [-FORCE * 0.4, FORCE * 0.4], rtol=1e-7)
+    np.testing.assert_allclose(f.vjp(f.x0, [1.0, 0.5])[1], [0.0, -FORCE * 0.2], atol=1e-5)
+
+
 @pytest.mark.parametrize("rtol", [1e-6, 1e-8, 1e-10])
 @pytest.mark.parametrize("seed", SEEDS)
 def test_a_plateau_that_a_formula_reaches_within_a_step(seed, rtol):

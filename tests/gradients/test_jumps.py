@@ -197,6 +197,33 @@ def test_an_extreme_within_nanoseconds_has_its_value_and_no_derivatives() -> Non
         f.gradient()
 
 
+@pytest.mark.parametrize("speed", [1e-5, 5e-4, 0.1])
+def test_no_other_extreme_stands_for_one_within_nanoseconds(speed: float) -> None:
+    """While it slips, for 0.01 to 100 ps, the brake has more torque than it holds later."""
+    d = cw.Driveline("another")
+    s = d.shaft("s", inertia=1e-9, speed=speed)
+    friction = cw.Coulomb(static=0.5, kinetic=0.4)
+    d.add(cw.Brake("brake", shaft=s, friction=friction, gain=1.0, normal_force=2.0))
+    d.add(cw.Torque("load", shaft=s, torque=cw.Table([[0.0, 0.0], [0.1, 0.3], [0.2, 0.0]])))
+    f = cw.differentiable(d, 0.3, of=cw.peak("brake.torque"), by=["brake.gain", "load.torque.values[2]"], **TIGHT)
+    assert f(f.x0)[0] == pytest.approx(0.8, rel=1e-9)
+    with pytest.raises(cw.NoGradient, match=r"peak\(brake.torque\) is reached in motion that settles"):
+        f.gradient()
+    with pytest.raises(cw.NoGradient):
+        f.vjp(f.x0, [1.0])
+
+
+@pytest.mark.parametrize("side", SIDES)
+def test_a_torque_that_is_zero_for_a_while_has_both_sides(side: str) -> None:
+    """A negative one of a fundamental clutch counts as zero, so it brakes later alone."""
+    d = cw.Driveline("fundamental")
+    a, b = d.shaft("a", inertia=1.0, speed=10.0), d.shaft("b", inertia=1.0)
+    kinetic = cw.Ramp(height=5.0, duration=0.1, start=0.2)
+    d.add(cw.FundamentalClutch("c", base=b, follower=a, kinetic=kinetic, upper=20.0, lower=-20.0))
+    f = cw.differentiable(d, 0.4, of="a.speed", by="c.kinetic.offset", side=side, **TIGHT)
+    assert f.gradient().matrix[0, 0] == pytest.approx({"left": -0.2, "right": -0.4}[side], rel=1e-4)
+
+
 @pytest.mark.parametrize("side", SIDES)
 def test_a_flow_that_is_zero_for_a_while_has_both_sides(side: str) -> None:
     # seed 160227

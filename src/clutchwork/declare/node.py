@@ -422,7 +422,7 @@ class Law(Declared):
 
     @property
     def bends(self) -> bool:
-        """Whether it bends within steps, at slips that have no event."""
+        """Whether its torque has a kink or a jump at a slip that is not an event."""
         return False
 
     def problems(self) -> Found:

@@ -22,7 +22,7 @@ class FundamentalClutch(Sticking):
     base: Node = port("side that the slip is measured from")
     follower: Node = port("side whose motion is positive: slip = follower - base")
     kinetic: SignalLike = signal(
-        "N m", "torque while it slips, against the slip; below zero counts as zero", units=("N",)
+        "N m", "torque while it slips, against the slip; below zero counts as zero", units=("N",), clips=True
     )
     upper: SignalLike = signal("N m", "largest torque that it holds, at least zero", units=("N",))
     lower: SignalLike = signal("N m", "smallest torque that it holds, at most zero", units=("N",))

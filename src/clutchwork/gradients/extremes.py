@@ -248,7 +248,8 @@ def value(one: Extreme, found: list[Located]) -> float:
 
 def further(one: Extreme, value: float, other: float) -> float:
     """The value that is more of an extreme; NaN is none."""
-    return other if (other < value if one.kind == "minimum" else other > value) else value
+    is_further = other < value if one.kind == "minimum" else other > value
+    return other if is_further or np.isnan(value) else value
 
 
 def kinks(primal: Primal, found: list[Located]) -> tuple[float, ...]:

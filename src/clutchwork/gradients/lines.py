@@ -23,6 +23,7 @@ ALIKE = 1e-6
 UNKNOWN = 1e-6
 # share of a squared jerk in steps that runs with derivatives do not look into, from which on it has none
 UNSEEN = 1e-5
+UNSEEN_MOTION = "which has no derivatives; give what is so stiff more inertia, or start it where it has settled"
 # a number that passes zero has at least this size, of the largest one of its kind
 PASSES = 1e-3
 # values below this are round-off
@@ -82,12 +83,13 @@ def _columns(one: Measure) -> Places:
 
 def _nothing(name: str, one: Measure, t_end: float) -> str:
     """Why a measure has no derivatives; none where it has."""
+    if one.is_unseen:
+        return f"{name} is reached in motion that settles within a few nanoseconds, {UNSEEN_MOTION}"
     if not one.changes:
         return f"{name} does not happen before {t_end:g} s; take one that does, or a later end time"
     if one.unseen > UNSEEN:
-        what = f"{name} is reached in" if one.when else f"{min(one.unseen, 1.0):.2%} of {name} is from"
-        remedy = "give what is so stiff more inertia, or start it where it has settled"
-        return f"{what} motion that settles within a few nanoseconds, which has no derivatives; {remedy}"
+        what = f"{min(one.unseen, 1.0):.2%} of {name} is from motion that settles within a few nanoseconds"
+        return f"{what}, {UNSEEN_MOTION}"
     return ""
 
 
@@ -95,9 +97,10 @@ def _line(run: Run, name: str, one: Measure, sizes: Array, allowed: float) -> Li
     found = np.array([run.slope(change) for change in one.changes])
     if none := _nothing(name, one, run.primal.t_end):
         # what moves nothing of it moves nothing that is not seen
-        nothing = np.where(found[0] == 0.0, 0.0, np.nan) if one.changes else np.full(len(sizes), np.nan)
+        is_part = one.changes and not one.is_unseen
+        nothing = np.where(found[0] == 0.0, 0.0, np.nan) if is_part else np.full(len(sizes), np.nan)
         # a tighter run may see more
-        rough = one.unseen > UNSEEN
+        rough = one.is_unseen or one.unseen > UNSEEN
         return Line(name, one.value, 0.0, nothing, nothing, one.until, none=none, rough=rough, missed=one.unseen)
     least = most = found[0]
     why, lost = "", unknown(run, one, sizes)

@@ -46,7 +46,8 @@ class Measure(NamedTuple):
     is_least: bool = False  # a minimum, which of equal ones is the one that falls most
     missed: tuple[tuple[Functional, float], ...] = ()  # what moves, and by how much its share in the value is not known
     is_massless: bool = False  # of a shaft whose accelerations are not known well
-    unseen: float = 0.0  # share of the value that is not in the rows of the steps
+    unseen: float = 0.0  # share of a squared jerk that is not in the rows of the steps
+    is_unseen: bool = False  # an extreme that is not in them
 
 
 class Context(NamedTuple):
@@ -129,7 +130,7 @@ def _extreme(primal: Primal, one: Extreme) -> Measure:
         size=size,
         is_least=one.kind == "minimum",
         missed=tuple(lost for lost in missed if lost is not None),
-        unseen=float(abs(whole - located) > SHORT * size),
+        is_unseen=bool(np.isfinite(whole)) and not abs(whole - located) <= SHORT * size,
     )
 
 

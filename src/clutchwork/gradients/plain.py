@@ -227,8 +227,9 @@ def _by_rows(one: Extreme | SquaredJerk, run: Run, steps: Steps, form: Form) -> 
     """A squared jerk, or an extreme in steps that are too short for runs with derivatives; NaN without any."""
     if isinstance(one, SquaredJerk):
         return _jerk(run, steps, form)
-    rows = steps.rows[~steps.is_long].ravel()
-    values = np.asarray(form(run.rows[rows]), dtype=float) if len(rows) else NO_VALUES
+    short = np.ones(len(run.rows), dtype=bool)
+    short[steps.rows[steps.is_long]] = False
+    values = np.asarray(form(run.rows[short]), dtype=float) if short.any() else NO_VALUES
     return float(one.reduced(values, FIRST)[0]) if len(values) else float("nan")
 
 

@@ -156,7 +156,8 @@ def _rough(one: Extreme, steps: Steps, values: Array, may_bend: Mask) -> Iterato
 
 def _places(steps: Steps, values: Array, step: int) -> Iterator[float]:
     """Instants that divide a step: where the polynomials of its neighbours intersect, else equal parts."""
-    meeting, least = _meeting(steps, values, step), LEAST * (1.0 + abs(float(steps.begin[step]))) / steps.length[step]
+    least = LEAST * (1.0 + abs(float(steps.begin[step]))) / float(steps.length[step])
+    meeting = _meeting(steps, values, step)
     if meeting is None and CUTS * least < 1.0:
         yield from np.arange(1, CUTS) / CUTS
     elif meeting is not None and max(SHORTEST, least) < meeting < 1.0 - max(SHORTEST, least):

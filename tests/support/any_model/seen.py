@@ -42,7 +42,8 @@ class Seen:
         if run.status == "zeno" and self.chatters:
             # one that a sign of a slip ends stops between two decisions
             whole = self.time < self.time[-1]
-            self.rows, self.time = self.rows[whole], self.time[whole]
+            if whole.any():
+                self.rows, self.time = self.rows[whole], self.time[whole]
         self.inertia = np.array([node.inertia for node in self.wiring.nodes])
         self.rtol = float(run.options.rtol)
 

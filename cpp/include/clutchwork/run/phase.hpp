@@ -382,15 +382,15 @@ class Phase : public StepSize<typename Form::Scalar> {
   CLUTCHWORK_INLINE bool must_land(const Hit& hit) {
     if (hit.none() || landings_ >= most_landings || hit.s <= 0 || hit.s >= 1) return false;
     bool sure = error_until(taken_form(), taken_step(), hit.s) <= most_cut_error;
+    if constexpr (Form::full) {
+      // a pole is where it is, and at it nothing tells what the contact has held
+      if (taken_form().ws.ratios.n > 0 && !keeps_ties(taken_form().ws.ratios)) return false;
+    }
     if constexpr (!Form::small) {
       if (sure && any_massless(taken_form())) {
         sure = massless_error(taken_form(), taken_step(), hit.s) <= most_light_error;
         if constexpr (has_tangents<T>) varied_.forget_factor();
       }
-    }
-    if constexpr (Form::full) {
-      // a pole is where it is, and at it nothing tells what the contact has held
-      if (taken_form().ws.ratios.n > 0 && !keeps_ties(taken_form().ws.ratios)) return false;
     }
     return !sure;
   }

@@ -78,7 +78,8 @@ double before_lost_tie(Form& form, Step<Form>& step, double s, const Snapshot<T>
 /// where it holds again. docs/theory/varying-ratios.md (22)
 template <class Form, class T = typename Form::Scalar>
 void behind_lost_tie(Form& form, Step<Form>& step, const Snapshot<T>& shot) {
-  constexpr double near = 1e-9;
+  // of the time
+  constexpr double soon = 1e-9;
   Workspace<T>& ws = form.ws;
   const Ratios<T>& r = ws.ratios;
   if (r.n == 0 || step.h != 0) return;
@@ -90,8 +91,9 @@ void behind_lost_tie(Form& form, Step<Form>& step, const Snapshot<T>& shot) {
     moves = moves || (rests && value(r.plain.gram[t * r.ties + t]) == 0 && value(r.plain.slope[r.tie[t]]) != 0);
   }
   if (!moves) return;
-  const double later = step.t + near * larger(1e-2, abs(step.t));
+  const double later = step.t + soon * larger(1e-2, abs(step.t));
   inputs_at(ws, later);
+  input_slopes_at(ws, later);
   observe(form, later, shot.y, shot.d);
 }
 

@@ -94,7 +94,7 @@ class FormulaLaw(Law):
 
     @property
     def bends(self) -> bool:
-        """Whether it bends within steps."""
+        """Whether an operation of its expressions has a kink or a jump."""
         program, _ = self._program
         return program is not None and program.bends
 
