@@ -55,7 +55,7 @@ class PlateContact(Contact):
         gain=GAIN_OF_FORCE,
         instead_of="pressure",
     )
-    wear: SignalLike | None = signal("m", "depth of wear, at least zero", default=None, otherwise=0.0, clips=True)
+    wear: SignalLike | None = signal("m", "depth of wear, none below zero", default=None, otherwise=0.0, clips=True)
     fault_signal: SignalLike | None = signal("1", "triggers the fault above 0.5", default=None, otherwise=0.0)
     fault_time: SignalLike | None = signal("1", "triggers it above 0.5 as well", default=None, otherwise=0.0)
 
