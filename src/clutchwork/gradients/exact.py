@@ -4,12 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from concurrent.futures import ThreadPoolExecutor
-from dataclasses import replace
+from dataclasses import field, replace
 from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
 
+from clutchwork.assembly.wiring import wiring
 from clutchwork.base.classes import dataclass
 from clutchwork.base.errors import ModelError
 from clutchwork.gradients.bends import Bends, bends_of, spread
@@ -47,6 +48,7 @@ class Exact:
 
     task: GradientTask
     again: bool = False  # whether it is asked for what another one knows too little of
+    _others: dict[tuple[tuple[str, int, int], ...], Exact] = field(default_factory=dict, repr=False)  # by structure
 
     @cached_property
     def runs(self) -> Runs:
@@ -86,14 +88,30 @@ class Exact:
                 raise ModelError(error.problems, f"x[{number}] of {len(x)} lines") from None
 
     def _values(self, x: Array) -> Array:
-        systems = [self.runs.words.bytes_at(line) for line in x]
-        return self.runs.plain.values(systems, [self.runs.signals.at(line) for line in x])
+        found, engines = np.zeros((len(x), len(self.task.labels))), [self._like(line) for line in x]
+        for engine in dict.fromkeys(engines):
+            mine = [number for number, one in enumerate(engines) if one is engine]
+            runs, points = engine.runs, x[mine]
+            systems = [runs.words.bytes_at(line) for line in points]
+            found[mine] = runs.plain.values(systems, [runs.signals.at(line) for line in points])
+        return found
+
+    def _like(self, x: Array) -> Exact:
+        """The same for the structure at a point: a number that is zero, such as a lag, may leave out a state."""
+        system = self.runs.words.at(x)[0].assembled.system
+        columns = wiring(system).columns
+        if columns == wiring(self.task.system).columns:
+            return self
+        key = tuple((name, part.start, part.stop) for name, part in columns.items())
+        if key not in self._others:
+            self._others[key] = Exact(replace(self.task, system=system), self.again)
+        return self._others[key]
 
     # ----------------------------------------------------------------------------------------------------- derivatives
 
     def gradient(self, x: Array) -> GradientValues:
         """Values and derivatives at a point, NaN for one that does not exist; NoGradient where there is none at all."""
-        found = self._found(x)
+        found = self._like(x)._found(x)  # noqa: SLF001, its own kind
         if found.problems and found.matrix.size and np.isnan(found.matrix).all():
             raise NoGradient(found.problems)
         return found
@@ -109,7 +127,7 @@ class Exact:
 
     def _found_or_none(self, x: Array) -> GradientValues:
         try:
-            return self._found(x)
+            return self._like(x)._found(x)  # noqa: SLF001, its own kind
         except NoGradient:
             return GradientValues(self._values(x[None])[0], np.full((len(self.task.labels), len(x)), np.nan))
 
@@ -118,6 +136,8 @@ class Exact:
 
         NoGradient where one of these does not exist.
         """
+        if (engine := self._like(x)) is not self:
+            return engine.product(x, weights)
         used = weights != 0.0
         known = self._followed_product(x, weights) if self._is_followed_back(x, 1) else None
         if known is not None:
@@ -145,7 +165,7 @@ class Exact:
         return np.array([one.value for one in found]), run.slope(whole)
 
     def _is_rough(self, point: RunPoint, run: Run, one: Measure) -> bool:
-        if one.unseen > UNSEEN:
+        if one.is_unseen or one.unseen > UNSEEN:
             return True
         allowed = UNKNOWN if one.is_massless else self._asked.unknown
         return bool(one.missed) and bool(np.any(unknown(run, one, point.sizes) > allowed))
@@ -250,7 +270,8 @@ class Exact:
         if number is not None and len(x) > AT_ONCE:
             return self._beside_alone(x, number)
         try:
-            found = self.lines(self.runs.point(x))[1]
+            engine = self._like(x)
+            found = engine.lines(engine.runs.point(x))[1]
         except (ModelError, NoGradient):
             return None
         if number is None:
