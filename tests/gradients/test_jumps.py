@@ -238,3 +238,17 @@ def test_a_flow_that_is_zero_for_a_while_has_both_sides(side: str) -> None:
     known = (f(f.x0 + step)[0] - f(f.x0)[0]) / step
     found = cw.differentiable(d, 0.4, of=["plates.heat"], by="oil.flow.offset", side=side, **TIGHT).gradient()
     assert found.matrix[0, 0] == pytest.approx(known, rel=1e-4)
+
+
+def test_a_top_of_a_load_that_is_held_in_long_steps() -> None:
+    """What is locked takes steps of any length, and its load has a top inside of one."""
+    # seed 170202
+    d = cw.Driveline("held")
+    s = d.shaft("s", inertia=0.7)
+    load = cw.Sine(amplitude=34.161, frequency=26.87, phase=2.81, offset=-101.5)
+    d.add(cw.Torque("load", shaft=s, torque=load))
+    friction = cw.Coulomb(static=0.139, kinetic=0.139)
+    d.add(cw.Brake("brake", shaft=s, friction=friction, gain=1.0, normal_force=1e4))
+    f = cw.differentiable(d, 0.0934, of=cw.peak("brake.torque"), by="load.torque.frequency", **TIGHT)
+    assert f(f.x0)[0] == pytest.approx(135.661, rel=1e-10)
+    assert abs(f.gradient().matrix[0, 0]) * 26.87 < 1e-7 * 135.661
