@@ -216,6 +216,12 @@ def test_models_that_failed_once(seed: int) -> None:
     assert not faults(KEPT[str(seed)], seed, 0)
 
 
+def test_an_impulse_within_a_run_is_none_of_its_start() -> None:
+    run = model.driveline(KEPT["37005603"]).simulate()
+    assert run.events.of(cause="impulse")
+    assert not run.events.at_start()
+
+
 # the same of what agrees with them, by the kind of fault that is looked for
 MENDED_BESIDE: dict[tuple[str, str], list[int]] = {
     ("a zero of slips that changed where a run was left", ""): [241, 50572, 60251, 80376, 80480],

@@ -145,7 +145,7 @@ def balance(wiring: Wiring, rows: NDArray[np.float64], events: Events, start: fl
     sources |= {branch.name: work for branch, work in _works(wiring, ends, "prescribed_work", wiring.motions)}
     heat |= {branch.name: 0.0 - work for branch, work in _works(wiring, ends, "contact_work", wiring.contacts)}
     # a row at time zero lies behind the impulses of the start, whose work it holds already
-    lost = _impulses([event for event in events.at_start() if event.time <= start])
+    lost = _impulses([event for event in events if event.cause == "impulse" and event.time <= start])
     before = ends[0, wiring.columns["contact_work"]] if lost else np.zeros(len(wiring.contacts))
     for branch, work in zip(wiring.contacts, before, strict=True):
         heat[branch.name] -= float(work)
