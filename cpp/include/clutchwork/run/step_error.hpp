@@ -7,8 +7,7 @@
 #include <clutchwork/run/step.hpp>
 #include <clutchwork/workspace.hpp>
 
-/// What the interpolant of a step misses inside it, of which its own estimate says nothing. docs/theory/events.md, rule
-/// 7
+/// What the interpolant of a step misses inside it, of which its estimate says nothing. docs/theory/events.md, rule 7
 namespace clutchwork {
 
 /// Error that the motion up to the share s of a step may have, in units of the tolerance: what the interpolant misses
