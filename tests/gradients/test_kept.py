@@ -431,7 +431,8 @@ def test_a_plateau_of_many_steps_ends_where_it_rises() -> None:
     flat, rise = 40, 2e-10
     begin = np.arange(flat + 3) * 0.1
     shares = np.broadcast_to(np.linspace(0.0, 1.0, 5), (len(begin), 5))
-    steps = Steps(begin, np.full(len(begin), 0.1), shares, np.zeros((len(begin), 5), dtype=int), begin < 0.0)
+    rows = np.zeros((len(begin), 5), dtype=int)
+    steps = Steps(begin, np.full(len(begin), 0.1), shares, rows, begin < 0.0, begin >= 0.0)
     values = np.zeros((len(begin), 5))
     values[flat:] = np.maximum(0.0, rise * (np.arange(3)[:, None] + shares[:1]) ** 2)
     values[-1] = np.linspace(values[-2, -1], 1.0, 5)
@@ -559,9 +560,8 @@ def test_a_signal_that_is_round_off_is_not_cut_again_and_again() -> None:
     # seed 97034: a held shaft, of which each part of a step seemed to miss a bend, took 48 s
     count, rng = 49, np.random.default_rng(1)
     shares = np.broadcast_to(np.linspace(0.0, 1.0, 5), (count, 5))
-    steps = Steps(
-        np.arange(count) * 1e-3, np.full(count, 1e-3), shares, np.zeros((count, 5), dtype=int), shares[:, 0] < 0.0
-    )
+    begin, none = np.arange(count) * 1e-3, np.zeros(count, dtype=bool)
+    steps = Steps(begin, np.full(count, 1e-3), shares, np.zeros((count, 5), dtype=int), none, ~none)
 
     def noise(made: Steps) -> refined.Seen:
         return refined.Seen([1e-22 * rng.normal(size=(len(made), 5))], [None], np.ones(len(made), dtype=bool))

@@ -233,7 +233,7 @@ def test_all_mistakes_at_once() -> None:
         ({"inertias": 3.0}, "inertias = 3.0: must be a table of numbers in [kg m2] by name"),
         ({"shift": {"low": 3.0}}, "shift.low = 3.0: must be a table"),
         ({"efficiencies": {"P1": 1.5}}, "efficiencies.P1 = 1.5: must be > 0 and <= 1"),
-        ({"gear": "7"}, "gear is not a gear of 'four speeds'"),
+        ({"gear": "7"}, "gear '7' is not a gear of 'four speeds'"),
         ({"gearbox": "ford-aod"}, "is not in the catalogue; did you mean 'ford-aode'?"),
         ({"gearbox": "none.toml"}, "does not exist"),
         ({"gearbox": 3}, "is not a gearbox: 3"),

@@ -28,9 +28,9 @@ def _driveline(**changes: object) -> cw.Driveline:
 @pytest.mark.parametrize(
     ("field", "value", "words"),
     [
-        ("gain", -0.1, "gain = -0.1 m3: must be > 0 m3; give a positive value: torque per unit of pressure"),
-        ("tolerance", -1.0, "must be >= 0 rad/s; give zero or a positive value: slip below which"),
-        ("heat_share", 2.0, "must be >= 0 and <= 1; lower it: share"),
+        ("gain", -0.1, "gain = -0.1 m3: must be > 0 m3; give a positive value (torque per unit of pressure"),
+        ("tolerance", -1.0, "must be >= 0 rad/s; give zero or a positive value (slip below which"),
+        ("heat_share", 2.0, "must be >= 0 and <= 1; lower it (share"),
         ("gain", "3", "gain = '3': has no unit; remove the quotes or add one, such as '3 m3'"),
     ],
 )

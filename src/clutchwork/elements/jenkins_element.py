@@ -29,7 +29,7 @@ from clutchwork.elements.bases.heating import Heating
         State("friction_torque", "N m", "torque of the spring", span=1e-7),
         State("twist", "rad", "follower - base", span=1e-7),
     ),
-    hooks=("margin", "cross", "turns", "settle", "count", "heat"),
+    hooks=("margin", "cross", "turns", "settle", "count", "heat", "freed"),
 )
 class JenkinsElement(Heating):
     """Spring in series with dry friction: it twists up to the limit of the friction, then slides.
@@ -85,6 +85,6 @@ class JenkinsElement(Heating):
         """No torque of the spring, and the twist at the start [rad]."""
         return (0.0, self.initial_twist)[: len(self.own_states())]
 
-    def stored(self, states: Sequence[float], torque: float) -> float:  # noqa: ARG002, its torque is that of the spring
+    def stored(self, states: Sequence[float], torque: float) -> float:  # noqa: ARG002, its state alone tells
         """Energy of the spring [J]."""
-        return 0.5 * torque * torque / self.stiffness
+        return 0.5 * states[0] * states[0] / self.stiffness

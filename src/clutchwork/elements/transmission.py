@@ -136,7 +136,7 @@ class Transmission(TabledComposite, Heating):
             if name not in of
         ]
         if self.gear is not None and self.gear not in box.gears:
-            message = f"is not a gear of {quote(box.name)}{near(self.gear, box.gears)}"
+            message = f"{quote(self.gear)} is not a gear of {quote(box.name)}{near(self.gear, box.gears)}"
             found.append(("gear", message, f"it has {listed(box.gears)}"))
         return found
 

@@ -280,8 +280,10 @@ def add_extreme(primal: Primal, one: Extreme, found: Located, into: Functional) 
     for step, weights in whole:
         add_signal(primal, one.signal, steps.rows[step], weights, into)
     if end is None and not found.is_flat and place == (found.step, found.share):
-        moves = primal.functional()
-        add_signal(primal, one.signal, steps.rows[found.step], steps.basis[found.step, PARTS], moves)
+        moves, (first, last) = primal.functional(), steps.around(found.step, 0) or (found.step, found.step)
+        # of a part of a step that of the whole one, which has its error
+        longer = float((steps.end[last] - steps.begin[first]) / steps.length[found.step]) ** PARTS
+        add_signal(primal, one.signal, steps.rows[found.step], longer * steps.basis[found.step, PARTS], moves)
         return moves, TOP_MISSES
     if not inside:
         slopes = steps.left_slope if found.share == 0.0 else steps.right_slope

@@ -218,12 +218,13 @@ def _turns(steps: Steps, capacity: Array, torque: Array) -> Iterator[tuple[int, 
 
 def split(steps: Steps, cuts: Mapping[int, set[float]]) -> Steps:
     """The same steps where some are cut at places in them."""
-    begins, lengths, jumps = list[float](), list[float](), list[bool]()
+    begins, lengths, jumps, whole = list[float](), list[float](), list[bool](), list[bool]()
     for step, (begin, length) in enumerate(zip(steps.begin.tolist(), steps.length.tolist(), strict=True)):
         places = [0.0, *sorted(cuts.get(step, ())), 1.0]
         begins += [begin + place * length for place in places[:-1]]
         lengths += (np.diff(places) * length).tolist()
         jumps += [bool(steps.jumps[step]), *([False] * (len(places) - 2))]
+        whole += [bool(steps.whole[step]), *([False] * (len(places) - 2))]
     rows = np.zeros((len(begins), PARTS + 1), dtype=np.intp)
     shares = np.broadcast_to(np.arange(PARTS + 1) / PARTS, rows.shape)
-    return Steps(np.array(begins), np.array(lengths), shares, rows, np.array(jumps)).inside()
+    return Steps(np.array(begins), np.array(lengths), shares, rows, np.array(jumps), np.array(whole)).inside()

@@ -47,8 +47,9 @@ def _fitted(primal: Primal, values: Values, step: int) -> Polynomial | None:
     # it says no more than that of the step itself where that misses less
     allowed = float(abs(steps.basis[step, PARTS] @ values(step, step)))
     for reach in REACHES:
-        first, last = step - reach, step + reach
-        if first < 0 or last >= len(steps) or np.any(kinds[first + 1 : last + 1] != SMOOTH):
+        # parts of one step have its errors together
+        first, last = steps.around(step, reach) or (0, -1)
+        if last < 0 or np.any(kinds[first + 1 : last + 1] != SMOOTH):
             break
         times, own = primal.times[steps.rows[first : last + 1].ravel()], values(first, last)
         fitted = Polynomial.fit(times, own, DEGREE)

@@ -33,6 +33,7 @@ class Steps:
     share: Array  # of each step: places of its rows in it, from 0 to 1
     rows: Places  # of each step: its rows
     jumps: NDArray[np.bool_]  # whether a signal, a torque or an acceleration jumps where each begins
+    whole: NDArray[np.bool_]  # whether the solver began a step there: others are parts of it
 
     @classmethod
     def of_parts(cls, times: Array) -> Steps:
@@ -41,7 +42,7 @@ class Steps:
         shares = np.broadcast_to(np.arange(PARTS + 1) / PARTS, (len(first), PARTS + 1))
         rows = first[:, None] + np.arange(PARTS + 1)
         jumps = np.append(True, first[1:] - first[:-1] != PARTS)[: len(first)]
-        return cls(times[first], times[first + PARTS] - times[first], shares, rows, jumps)
+        return cls(times[first], times[first + PARTS] - times[first], shares, rows, jumps, np.ones_like(jumps))
 
     @property
     def is_long(self) -> NDArray[np.bool_]:
@@ -52,8 +53,8 @@ class Steps:
     def long(self) -> Steps:
         """Those that a run with derivatives can look into."""
         kept = np.flatnonzero(self.is_long)
-        jumps = np.diff(np.cumsum(self.jumps)[kept], prepend=0) > 0
-        return Steps(self.begin[kept], self.length[kept], self.share[kept], self.rows[kept], jumps)
+        jumps, whole = (np.diff(np.cumsum(own)[kept], prepend=0) > 0 for own in (self.jumps, self.whole))
+        return Steps(self.begin[kept], self.length[kept], self.share[kept], self.rows[kept], jumps, whole)
 
     def covering(self) -> Steps:
         """The same, each with the short ones before it, and behind it, from which nothing separates it."""
@@ -68,14 +69,14 @@ class Steps:
                 begin[place] = min(begin[place], self.begin[step])
             elif place > 0 and chain[kept[place - 1]] == chain[step]:
                 end[place - 1] = ends[step]
-        return Steps(begin, end - begin, found.share, found.rows, found.jumps)
+        return Steps(begin, end - begin, found.share, found.rows, found.jumps, found.whole)
 
     def inside(self) -> Steps:
         """The same steps with rows that stay away from their ends; their places are not known yet."""
         away = np.clip(APART * (1.0 + np.abs(self.begin)) / self.length, INSIDE, MOST_INSIDE)
         shares = np.tile(np.arange(PARTS + 1) / PARTS, (len(self.begin), 1))
         shares[:, 0], shares[:, -1] = away, 1.0 - away
-        return Steps(self.begin, self.length, shares, self.rows, self.jumps)
+        return Steps(self.begin, self.length, shares, self.rows, self.jumps, self.whole)
 
     @property
     def room(self) -> Array:
@@ -90,7 +91,7 @@ class Steps:
         ends = [self.begin[0], self.end[-1]]
         known, there = np.r_[ends[0], before, ends[1]], np.r_[ends[0], behind, ends[1]]
         begin, end = np.interp(self.begin, known, there), np.interp(self.end, known, there)
-        return Steps(begin, np.maximum(end - begin, LEAST), self.share, self.rows, self.jumps).inside()
+        return Steps(begin, np.maximum(end - begin, LEAST), self.share, self.rows, self.jumps, self.whole).inside()
 
     @property
     def times(self) -> Array:
@@ -104,7 +105,7 @@ class Steps:
 
     def on(self, grid: Array) -> Steps:
         """The same steps with the places of their rows on a grid."""
-        return Steps(self.begin, self.length, self.share, np.searchsorted(grid, self.times), self.jumps)
+        return Steps(self.begin, self.length, self.share, np.searchsorted(grid, self.times), self.jumps, self.whole)
 
     def __len__(self) -> int:
         return len(self.begin)
@@ -156,6 +157,14 @@ class Steps:
         slopes, powers = SLOPES[:, None] * unlike[:, 1:], np.arange(PARTS)
         found: Array = np.einsum("nki,kl,nlj->nij", slopes, 1.0 / (powers[:, None] + powers + 1.0), slopes)[same]
         return found / self.length[:, None, None]
+
+    def around(self, step: int, reach: int) -> tuple[int, int] | None:
+        """First and last of the parts of the solver's step around one, and so many of its steps on each side."""
+        begins = np.flatnonzero(np.r_[self.whole, True])
+        own = int(np.searchsorted(begins, step, side="right")) - 1
+        if own < reach or own + reach + 1 >= len(begins):
+            return None
+        return int(begins[own - reach]), int(begins[own + reach + 1]) - 1
 
     def at(self, step: int, share: float) -> Array:
         """Weights that interpolate the rows of a step at a share of its length."""

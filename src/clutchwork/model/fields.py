@@ -265,7 +265,8 @@ def _peak(law: Law, at: At) -> Iterator[Problem]:
 
 def _text(value: Any, spec: Spec, at: At) -> Iterator[Problem]:
     if not (value is None and spec.optional) and (not isinstance(value, str) or not value):
-        yield at.problem("must be a string", value=quote(value), remedy=spec.doc)
+        written = f"write {quote(str(value))}: " if isinstance(value, int) and not isinstance(value, bool) else ""
+        yield at.problem("must be a string", value=quote(value), remedy=f"{written}{spec.doc}")
 
 
 def _formula(value: Any, spec: Spec, at: At) -> Iterator[Problem]:
@@ -294,7 +295,7 @@ def _tables(value: Any, spec: Spec, at: At) -> Iterator[Problem]:
         return
     for name, table in value.items():
         if not isinstance(table, Mapping):
-            remedy = say("write its fields below a head of its own", 'write {"type": "clutch", "gain": 1e-3}')
+            remedy = say("write its fields below a head of its own", 'write its fields by name, as in {"pressure": 1e6}')
             yield at.inner(str(name)).problem("must be a table", quote(table), remedy)
 
 

@@ -97,7 +97,7 @@ def instead(number: float, spec: Spec) -> str:
 
 
 def _for(remedy: str, spec: Spec) -> str:
-    return f"{remedy}: {spec.doc}" if spec.doc else remedy
+    return f"{remedy} ({spec.doc})" if spec.doc else remedy
 
 
 def list_problems(value: Any, spec: Spec, at: At) -> Iterator[Problem]:

@@ -21,8 +21,8 @@ HEIGHT, LINE, MOST_LINES = 40.0, 3.9, 18  # mm of a panel, mm of a line of its l
 COLUMNS = 2  # of a legend above a panel
 # four for each dot across the picture: what is left out cannot be seen
 MOST_POINTS = 40_000
-# share of the width that a letter of a word at an event needs
-LETTER = 0.0125
+# shares of the width: what a letter of a word at an event needs, and how far behind its line a word may begin
+LETTER, BEHIND = 0.0100, 0.02
 POINTS: dict[str, Any] = {"linestyle": "none", "marker": "o", "markersize": 2.4, "markeredgewidth": 0.0, "alpha": 0.65}
 
 
@@ -124,7 +124,7 @@ def _words(axes: Axes, view: View, letter: float) -> None:
         share, room = (instant - begin) / (end - begin), letter * len(found[0]) + 0.01
         # beside its line where another word takes the room
         left = min(max(share - 0.5 * room, taken), 1.0 - room)
-        if len(found) > 1 or left < taken or left > share:
+        if len(found) > 1 or left < taken or left > share + BEHIND:
             continue
         taken = left + room
         axes.annotate(

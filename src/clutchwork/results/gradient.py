@@ -96,7 +96,7 @@ class Gradient:
         ]
         values = ["", "", *(f"{value:.6g}" for value in self.values[: len(of)])]
         lines = [
-            [name, f"[1/({unit})]" if quotient("1", unit) != "1" else "", *(f"{d:.6g}" for d in line[: len(of)])]
+            [name, f"[{per}]" if (per := quotient("1", unit)) != "1" else "", *(f"{d:.6g}" for d in line[: len(of)])]
             for name, unit, line in zip(self.by, self.by_units, self.matrix.T, strict=True)
         ]
         return [*head, *more], [[*line, *([""] if more else [])] for line in [values, *lines]]

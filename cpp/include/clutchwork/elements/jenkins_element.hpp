@@ -54,16 +54,13 @@ struct JenkinsElement : declared::JenkinsElement {
   }
   template <class T, class S>
   static S heat(const Params<T>& p, const At<S>& at) {
-    S slides = at.rate * (T(1) - growth(p, at) / p.stiffness);
-    // what the speed does to the limit winds the spring
-    if (mode(at.piece) != sticks && follows_speed(p)) slides -= follows(p, at) / p.stiffness;
-    return spring(p, at) * slides;
+    if (mode(at.piece) == sticks) return S(T(0));
+    // what its state keeps, which comes after a limit that a speed changes
+    return spring(p, at) * at.rate - at.state[friction_torque] * winding(p, at) / p.stiffness;
   }
   template <class T, class S>
   static void state_rates(const Params<T>& p, const At<S>& at, S* rates) {
-    rates[friction_torque] = growth(p, at) * at.rate;
-    // what the speed does to the limit: while it slides the state is shown and nothing else, so it may come after
-    if (mode(at.piece) != sticks && follows_speed(p)) rates[friction_torque] += follows(p, at);
+    rates[friction_torque] = winding(p, at);
     if (count(p) > 1) rates[twist] = at.rate;
   }
 
@@ -88,10 +85,14 @@ struct JenkinsElement : declared::JenkinsElement {
   /// Sliding ends where the limit grows faster than the spring: where the slip turns, behind a knot, with the speed.
   template <class T>
   static int cross(const Params<T>& p, const At<T>& at, int who, T* state) {
-    const int next = who == turned ? piece_of(segment(at.piece), sticks) : who;
-    const At<T> there{at.rate, at.state, at.input, mode(at.piece) == sticks ? next : at.piece, at.points};
-    state[friction_torque] = spring(p, there);
-    return kept(p, at, next);
+    state[friction_torque] = left(p, at, who);
+    return kept(p, at, next_piece(at.piece, who));
+  }
+  /// What the spring loses where a speed has jumped and its limit is less than its torque.
+  template <class T>
+  static T freed(const Params<T>& p, const At<T>& at, int who) {
+    const T before = at.state[friction_torque], after = left(p, at, who);
+    return (before - after) * (before + after) / (T(2) * p.stiffness);
   }
   template <class T>
   static bool turns(const Params<T>& p, int piece) {
@@ -106,14 +107,28 @@ struct JenkinsElement : declared::JenkinsElement {
   }
 
  private:
-  static constexpr double after = 1e-4;  // [s]
+  static int next_piece(int piece, int who) { return who == turned ? piece_of(segment(piece), sticks) : who; }
+  /// Torque of the spring where its piece is left.
+  template <class T>
+  static T left(const Params<T>& p, const At<T>& at, int who) {
+    const int piece = mode(at.piece) == sticks ? next_piece(at.piece, who) : at.piece;
+    return spring(p, At<T>{at.rate, at.state, at.input, piece, at.points});
+  }
+
+  static constexpr double delay = 1e-4;  // [s]
   // of the limit, by which the state may lag behind it while it slides
   static constexpr double lag = 1e-3;
 
+  /// Rate of the state, which while it slides is shown and nothing else, so that it may come after.
+  template <class T, class S>
+  static S winding(const Params<T>& p, const At<S>& at) {
+    const S along = growth(p, at) * at.rate;
+    return mode(at.piece) != sticks && follows_speed(p) ? along + follows(p, at) : along;
+  }
   /// Rate at which the state comes after a limit that a speed changes.
   template <class T, class S>
   static S follows(const Params<T>& p, const At<S>& at) {
-    return (spring(p, at) - at.state[friction_torque]) / T(after);
+    return (spring(p, at) - at.state[friction_torque]) / T(delay);
   }
 
   /// Whether the limit of a piece that slides has jumped above the spring, which must be wound up first.

@@ -89,6 +89,7 @@ bool leave_event(Form& form, Step<Form>& step) {
 template <class T>
 void floor_sizes(Workspace<T>& ws) {
   constexpr double round_off = 1e-14;
+  for (int i = 0; i < ws.sys.speeds + ws.sys.states; ++i) ws.moved.most[i] = 0;
   double sum[T::seen] = {}, sum_at_zero[T::seen] = {};
   int n[T::seen] = {}, n_at_zero[T::seen] = {};
   auto look_at = [&](const T* number, std::int64_t count) {

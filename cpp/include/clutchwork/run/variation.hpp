@@ -568,6 +568,11 @@ class Variation {
     for (int i = nz; i < n; ++i) add_times(1 / h, mix[i], k[i]);
   }
 
+  /// The largest size of a component so far: one that swings passes zero, where its derivatives are as large as before.
+  double largest(int component, double size) const {
+    double& most = ws_.moved.most[component];
+    return most = larger(most, size);
+  }
   /// Components of two sets x(i) and y(i) of each direction, and their size in the motion, to f.
   template <class X, class At, class Other, class F>
   void each_component(At&& x, Other&& y, F&& f) const {
@@ -579,11 +584,11 @@ class Variation {
     for (int i = 0; i < nv; ++i) {
       auto moved = typename As<X>::Seen(0), other = moved;
       each_share(form, i, [&](double z, int j) { moved += x(j) * z, other += y(j) * z; });
-      f(moved, other, least + larger(plain.reduced.size[i], 1e-3 * fastest));
+      f(moved, other, largest(i, least + larger(plain.reduced.size[i], 1e-3 * fastest)));
     }
     for (int i = 0; i < form.ns(); ++i) {
       const double most = larger(abs(step0(nz + i)), abs(step1(nz + i)));
-      f(x(nz + i), y(nz + i), plain.reduced.floor[i] / plain.options.rtol + most);
+      f(x(nz + i), y(nz + i), largest(nv + i, plain.reduced.floor[i] / plain.options.rtol + most));
     }
   }
   double step0(int i) const { return const_cast<Step<Plain>&>(step).y0()[i]; }

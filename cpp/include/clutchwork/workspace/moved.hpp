@@ -53,6 +53,7 @@ struct Moved {
   int directions = T::seen;              ///< that are asked for, the first ones
   double begin = -infinity;              ///< [s] until then nothing moves
   double size[T::seen] = {};             ///< largest that each direction has had, over the size of the motion
+  double* most = nullptr;                ///< largest size that each speed and state has had
   bool work_left_out = false;            ///< steps are those of a run with work, which has no derivatives here
   typename T::Widest* slopes = nullptr;  ///< derivatives alone along a step: rows of the length of the motion
   Jacobian<double> other;                ///< of the image, at the other end of a step of the derivatives
@@ -62,7 +63,7 @@ struct Moved {
   template <class P, class A>
   static void lay_out(P& p, A& a, const Sizes& s) {
     a.scratch(p.row, s.row), a.scratch(p.slopes, SlopeRow::count * (s.speeds + s.states));
-    a.scratch(p.moves, s.directions);
+    a.scratch(p.moves, s.directions), a.scratch(p.most, s.speeds + s.states);
     const auto unknowns = s.full ? s.speeds + s.states : 0;
     Jacobian<double>::lay_out(p.other, a, s), a.scratch(p.other_whole, unknowns * unknowns);
     a.scratch(p.event, EventBuffer::room + 3 * s.contacts), a.scratch(p.graze, room);
