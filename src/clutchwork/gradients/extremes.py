@@ -15,6 +15,7 @@ from clutchwork.gradients.functional import Functional
 from clutchwork.gradients.held_torques import torque_at_limit
 from clutchwork.gradients.instants import add_shift, add_turn, missed
 from clutchwork.gradients.primal import SMOOTH, Primal
+from clutchwork.gradients.sides import Sides, jumps, of_bend
 from clutchwork.gradients.signals import add_signal, signal_at
 from clutchwork.gradients.steps import Steps
 from clutchwork.sweeps.outputs import Extreme
@@ -29,10 +30,6 @@ NOWHERE = np.zeros(0, dtype=np.intp)
 EQUAL = 1e-9
 # of what equal ones may differ by: round-off
 LEVEL = 1e-3
-# slopes that differ by more are those of a bend, of the larger one
-BENT = 1e-3
-# limits from both sides that differ by more are those of a jump, of the larger one
-JUMP = 1e-6
 # what a dense output may miss at a top that several steps do not fit, of its last coefficient
 TOP_MISSES = 0.01
 # from so many steps in a row on they are looked at as one hill
@@ -270,7 +267,7 @@ def add_extreme(primal: Primal, one: Extreme, found: Located, into: Functional) 
     whole = [(place[0], sign * steps.at(*place))]
     inside = end is None or not 0 < end < len(steps)
     if not inside and primal.between[0][end] == SMOOTH and not found.is_level:
-        whole = _of_bend(primal, one, int(end or 0), sign) or whole
+        whole = of_bend(primal, one.signal, int(end or 0), sign) or whole
     held = torque_at_limit(primal, one.signal, found.step) if not inside and found.share == 1.0 else None
     if held is not None:
         rows, values = steps.rows[found.step], held.sign * primal.rows[steps.rows[found.step], held.column]
@@ -293,7 +290,7 @@ def add_extreme(primal: Primal, one: Extreme, found: Located, into: Functional) 
             moves = primal.functional()
             add_shift(primal, int(end or 0), 1.0, moves)
             return moves, abs(rate) * missed(primal, found.step, at_end=found.share == 1.0)
-        if _jumps(primal, one, int(end or 0)):
+        if jumps(primal, one.signal, int(end or 0)):
             add_turn(primal, one.signal, int(end or 0), sign * rate, into)
     return None
 
@@ -301,50 +298,6 @@ def add_extreme(primal: Primal, one: Extreme, found: Located, into: Functional) 
 def _rows_of(primal: Primal, one: Extreme, first: int, last: int) -> Array:
     """Its signal in all rows from a first to a last step."""
     return signal_at(primal, one.signal, primal.steps.rows[first : last + 1].ravel())
-
-
-def _jumps(primal: Primal, one: Extreme, end: int) -> bool:
-    """Whether a signal jumps between two steps."""
-    sides = Sides.of(primal.steps, end, *_beside(primal, one, end))
-    return sides.differ and sides.meeting is None
-
-
-def _beside(primal: Primal, one: Extreme, end: int) -> tuple[Array, Array]:
-    """The signal in the rows of the steps before and behind an instant."""
-    rows = primal.steps.rows
-    return signal_at(primal, one.signal, rows[end - 1]), signal_at(primal, one.signal, rows[end])
-
-
-class Sides(NamedTuple):
-    """A signal on both sides of an instant without an event: its values, its slopes, and where rows are [s]."""
-
-    before: float
-    behind: float
-    rise: float
-    fall: float
-    gap: tuple[float, float]
-
-    @classmethod
-    def of(cls, steps: Steps, end: int, before: Array, behind: Array) -> Sides:
-        """Those at the begin of a step, from the values in the rows of the step before and of its own."""
-        first = float((steps.share[end - 1, -1] - 1.0) * steps.length[end - 1])
-        last = float(steps.share[end, 0] * steps.length[end])
-        values = float(steps.right[end - 1] @ before), float(steps.left[end] @ behind)
-        slopes = float(steps.right_slope[end - 1] @ before), float(steps.left_slope[end] @ behind)
-        return cls(*values, *slopes, (first, last))
-
-    @property
-    def differ(self) -> bool:
-        """Whether the values are those of a jump."""
-        return abs(self.before - self.behind) > JUMP * max(abs(self.before), abs(self.behind))
-
-    @property
-    def meeting(self) -> float | None:
-        """How far behind the instant both sides meet in a bend, where no rows are between [s]; None without one."""
-        if abs(self.rise - self.fall) <= BENT * max(abs(self.rise), abs(self.fall)):
-            return None
-        away = (self.behind - self.before) / (self.rise - self.fall)
-        return away if self.gap[0] <= away <= self.gap[1] else None if self.differ else 0.0
 
 
 def _at_bend(top: Located, steps: Steps, values: Array) -> Located:
@@ -355,18 +308,3 @@ def _at_bend(top: Located, steps: Steps, values: Array) -> Located:
     sides = Sides.of(steps, end, *values[end - 1 : end + 1])
     away = sides.meeting
     return top if not away else top._replace(value=top.sign * (sides.before + away * sides.rise))
-
-
-def _of_bend(primal: Primal, one: Extreme, end: int, sign: float) -> list[tuple[int, Array]]:
-    """Weights of the rows of both steps beside an instant without an event; none where the signal does not bend there.
-
-    Both sides stay equal, which says how the instant moves.
-    """
-    steps, sides = primal.steps, Sides.of(primal.steps, end, *_beside(primal, one, end))
-    away = sides.meeting
-    if away is None:
-        return []
-    shares = sign * sides.fall / (sides.fall - sides.rise), sign * sides.rise / (sides.rise - sides.fall)
-    before = shares[0] * (steps.right[end - 1] + away * steps.right_slope[end - 1])
-    behind = shares[1] * (steps.left[end] + away * steps.left_slope[end])
-    return [(end - 1, before), (end, behind)]

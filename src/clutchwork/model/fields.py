@@ -295,7 +295,7 @@ def _tables(value: Any, spec: Spec, at: At) -> Iterator[Problem]:
         return
     for name, table in value.items():
         if not isinstance(table, Mapping):
-            remedy = say("write its fields below a head of its own", 'write its fields by name, as in {"pressure": 1e6}')
+            remedy = say("write its fields below a head of its own", 'write its fields, as in {"pressure": 1e6}')
             yield at.inner(str(name)).problem("must be a table", quote(table), remedy)
 
 
