@@ -254,7 +254,7 @@ def test_a_top_of_a_load_that_is_held_in_long_steps() -> None:
     assert abs(f.gradient().matrix[0, 0]) * 26.87 < 1e-7 * 135.661
 
 
-@pytest.mark.parametrize("rtol", [1e-6, 1e-8, 1e-10])
+@pytest.mark.parametrize("rtol", [1e-6, 1e-8])
 def test_a_top_in_a_short_part_of_a_step_has_the_error_of_the_whole_one(rtol: float) -> None:
     # parts of one step agree to round-off and say nothing of what its dense output misses: 0.90 for -0.94 at 1e-6
     d = cw.Driveline("play")

@@ -120,6 +120,7 @@ def test_a_run_gives_its_gradient():
     assert found.by == ("c1.gain", *(f"c1.pressure.values[{number}]" for number in (1, 2, 3)))
     assert found["lock(c1)", "c1.gain"] == pytest.approx(EXACT["lock(c1)"]["c1.gain"], rel=1e-7)
     assert found.unit("lock(c1)", "c1.gain") == "s/m3"
+    assert "[1/m3]" in str(found)
     assert found["lock(c1)"].shape == (4,)
     # all ordinates by one percent are the gain by one percent
     assert found.relative[0, 1:].sum() == pytest.approx(found.relative[0, 0], rel=1e-6)

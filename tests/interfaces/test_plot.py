@@ -40,6 +40,22 @@ def test_legends_cover_no_curve(run: cw.Trajectory) -> None:
             assert legend.get_window_extent().x0 >= axes.get_window_extent().x1
 
 
+def test_what_happens_is_said_above_each_line_where_there_is_room() -> None:
+    d = cw.Driveline("third to fourth")
+    turbine, wheels = d.shaft("turbine", inertia=0.2, speed="2400 rpm"), d.shaft("wheels", inertia=30.0)
+    opens = cw.Ramp(height=-1e6, duration=0.07, start=0.5, offset=1e6)
+    closes = cw.Ramp(height=5e5, duration=0.4, start=0.5)
+    shift = {"C": {"pressure": opens}, "D": {"pressure": closes}}
+    d.add(cw.Transmission("box", input=turbine, output=wheels, gearbox="zf-8hp70", gear="3", shift=shift))
+    d.add(cw.Torque("engine", shaft=turbine, torque=200.0))
+    figure = d.simulate(1.5).plot("turbine.speed", "box.C.torque", "box.D.torque")
+    figure.draw_without_rendering()
+    words = figure.axes[0].texts
+    assert [word.get_text() for word in words] == ["box.C breaks away", "box.D locks"]
+    first, second = (word.get_window_extent() for word in words)
+    assert first.x1 < second.x0
+
+
 def test_the_zoom_shows_the_chosen_lock_up(run: cw.Trajectory) -> None:
     first = next(event for event in run.events if event.after == "locked")
     axes = run.plot(lockup=first).axes[1]

@@ -114,6 +114,8 @@ def test_what_is_no_text_and_no_table_is_left_to_the_checks(value):
         ("3 kg m", "N m", "does not fit"),
         ("3 MNm", "N m", "unknown unit 'MNm'; did you mean"),
         ("3 mpa", "Pa", "unknown unit 'mpa'"),
+        ("3 kgm2", "kg m2", "unknown unit 'kgm2'; did you mean 'kg m2'?"),
+        ("3 kPaa", "Pa", "unknown unit 'kPaa'; did you mean 'kPa'?"),
         ("2,5 bar", "Pa", "is not a number; write a decimal point: '2.5 bar'"),
         (
             "3 W/degC",

@@ -96,3 +96,23 @@ def test_teeth_that_part_faster_than_they_spring_back() -> None:
             pytest.approx(held, rel=1e-7),
             pytest.approx(lost, rel=1e-7),
         )
+
+
+@pytest.mark.parametrize("method", ["rodas5p", "dopri5"])
+def test_the_work_at_a_constant_speed_where_a_torque_bends_within_a_step(method: str) -> None:
+    # no state feels the torque of the pump, whose friction changes its sign against the load where it drives
+    speed, displacement, efficiency, slow = 40.0, 3e-5, 0.7, 5.0
+    begin, end, duration = -8e5, 5e5, 0.05
+    d = cw.Driveline("pump")
+    a = d.shaft("a", inertia=0.1)
+    d.add(cw.PrescribedSpeed("motion", shaft=a, speed=speed))
+    outlet = cw.Ramp(height=end - begin, duration=duration, offset=begin)
+    oil = {"displacement": displacement, "efficiency": efficiency, "slow": slow, "outlet": outlet}
+    d.add(cw.PumpTorque("pump", shaft=a, **oil))
+    run = d.simulate(duration, method=method, rtol=1e-8, atol=1e-10)
+    # integrals of the pressure and of its size over the ramp; a bend inside of a step is found to a few tolerances
+    mean, size = 0.5 * duration * (begin + end), 0.5 * duration * (begin**2 + end**2) / (end - begin)
+    friction = (1 / efficiency - 1) * speed / np.hypot(speed, slow)
+    work = displacement / (2 * np.pi) * speed * (mean + friction * size)
+    assert run["pump.work"][-1] == pytest.approx(-work, rel=1e-6)
+    assert run["motion.work"][-1] == pytest.approx(work, rel=1e-6)

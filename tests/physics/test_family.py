@@ -173,6 +173,18 @@ def test_band_brake_holds_more_in_one_direction() -> None:
         assert_switches(d.simulate(limit / 10.0 + 0.1, **TIGHT), [(limit / 10.0, "b", "locked", state)])
 
 
+@pytest.mark.parametrize("pull", [50.0, -50.0])
+def test_a_band_brake_at_rest_has_the_capacity_of_the_way_it_begins_to_slip(pull: float) -> None:
+    """Its law has no torque without slip, so that the torque of the first row says nothing of the way."""
+    d, shaft = wheel(0.0)
+    d.add(cw.Torque("pull", shaft=shaft, torque=pull))
+    law = cw.Tanh(kinetic=0.3, speed=0.1)
+    d.add(cw.BandBrake("b", shaft=shaft, friction=law, radius=0.1, wrap=3.0, force=200.0))
+    run = d.simulate(0.01)
+    limit = 20.0 * (math.expm1(0.3 * 3.0) if pull > 0 else -math.expm1(-0.3 * 3.0))
+    assert run["b.capacity"] == pytest.approx(limit, rel=1e-12)
+
+
 SHOES: dict[str, Any] = {"radius": 0.15, "hinge": 0.12, "arm": 0.2, "start": 0.2, "end": 2.2, "force": 1500.0}
 
 

@@ -105,7 +105,7 @@ def test_a_limit_that_follows_the_speed_of_the_base(slow):
     found = -run["damper.friction_1.torque"]
     # the fine steps have the error of a step at each turn
     assert found == pytest.approx(wanted, abs=2e-4 * np.max(np.abs(wanted)))
-    # the state is shown with a lag of 0.1 ms while it slides
+    # the state is shown with a lag of 10 µs while it slides
     assert run["damper.friction_1.friction_torque"] == pytest.approx(found, abs=0.02 * np.max(np.abs(found)))
     # work between prescribed speeds is a quadrature of its own, with the tolerance at each step
     assert abs(run.energy.residual) <= 1e-6 * run.energy.turnover

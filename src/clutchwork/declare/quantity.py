@@ -129,7 +129,9 @@ def scale_to_si(
         word = str(error)
         if units.other_zero(word):
             raise _refused(value, word, wanted, difference and units.powers_of(unit) == KELVIN) from None
-        meant = near(word, (unit, *others)) or near(word, [*units.known(), "degC", "degF"])
+        # a product without its space
+        glued = [name for name in (unit, *others) if name.replace(" ", "") == word]
+        meant = near(word, glued or [*units.known(), "degC", "degF"])
         raise QuantityError(f"has the unknown unit {quote(word)}{meant}", value, f"give it in {wanted}") from None
     if found is None:
         example = "" if unit == "1" else f", such as {example_of(unit)!r}"

@@ -55,7 +55,7 @@ def _told(problems: Any) -> tuple[tuple[str, str], ...]:
 def _words(problem: Problem) -> str:
     """A mistake of a gearbox as part of a sentence about the element that has it."""
     # one that is not in the catalogue is named already
-    if problem.path.startswith("gearbox "):
+    if problem.path.startswith("gearbox ") and not (problem.quantity or problem.value or problem.line):
         return f"{problem.path.removeprefix('gearbox ')} {advised(problem.message, '')}"
     where = ": ".join(word for word in (problem.path, problem.quantity) if word)
     line = f"line {problem.line}: " if problem.line else ""

@@ -159,12 +159,18 @@ class Steps:
         return found / self.length[:, None, None]
 
     def around(self, step: int, reach: int) -> tuple[int, int] | None:
-        """First and last of the parts of the solver's step around one, and so many of its steps on each side."""
-        begins = np.flatnonzero(np.r_[self.whole, True])
+        """First and last part of the solver's step that has one in it, and of so many of its steps on each side."""
+        begins = self._begins
         own = int(np.searchsorted(begins, step, side="right")) - 1
         if own < reach or own + reach + 1 >= len(begins):
             return None
         return int(begins[own - reach]), int(begins[own + reach + 1]) - 1
+
+    @cached_property
+    def _begins(self) -> Places:
+        """The parts with which steps of the solver begin, and the end."""
+        found: Places = np.flatnonzero(np.r_[self.whole, True])
+        return found
 
     def at(self, step: int, share: float) -> Array:
         """Weights that interpolate the rows of a step at a share of its length."""

@@ -118,5 +118,8 @@ def quotient(unit: str, by: str) -> str:
     """The unit of a derivative: "s/(N m)"."""
     if by in ("", "1"):
         return unit
+    if unit in ("", "1") and "/" in by:
+        below, above = by.split("/", 1)
+        return quotient(above.strip("()"), below)
     upper = f"({unit})" if "/" in unit else unit or "1"
     return f"{upper}/({by})" if " " in by or "/" in by else f"{upper}/{by}"

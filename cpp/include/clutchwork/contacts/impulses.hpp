@@ -21,6 +21,14 @@ void take_heat(const Workspace<T>& ws, int direction, T heat, T* state) {
   }
 }
 
+/// A branch leaves its piece; what its spring loses is heat.
+template <class T>
+void leave_piece(Workspace<T>& ws, Branch<T>& b, const T* rate, int who) {
+  const T freed = law_freed(ws, b, rate, who, ws.state);
+  b.piece = law_cross(ws, b, rate, who, ws.state);
+  if (value(freed) != 0) take_heat(ws, b.direction, freed, ws.state);
+}
+
 /// Energy of an impulse through metered lines, for jumps x of the independent speeds, before they are made.
 template <class T, class Jump, class Torque>
 void meter_impulse(Workspace<T>& ws, const T* x, Jump&& prescribed_jump, Torque&& impulse) {

@@ -55,7 +55,7 @@ struct JenkinsElement : declared::JenkinsElement {
   template <class T, class S>
   static S heat(const Params<T>& p, const At<S>& at) {
     if (mode(at.piece) == sticks) return S(T(0));
-    // what its state keeps, which comes after a limit that a speed changes
+    // less what the spring keeps, which is that of its state
     return spring(p, at) * at.rate - at.state[friction_torque] * winding(p, at) / p.stiffness;
   }
   template <class T, class S>
@@ -85,13 +85,14 @@ struct JenkinsElement : declared::JenkinsElement {
   /// Sliding ends where the limit grows faster than the spring: where the slip turns, behind a knot, with the speed.
   template <class T>
   static int cross(const Params<T>& p, const At<T>& at, int who, T* state) {
-    state[friction_torque] = left(p, at, who);
+    state[friction_torque] = torque_left(p, at, who);
     return kept(p, at, next_piece(at.piece, who));
   }
-  /// What the spring loses where a speed has jumped and its limit is less than its torque.
+  /// What the spring loses where its piece is left: where a speed has jumped, what the limit is less than its torque;
+  /// else what its state lags behind the limit, which may be below zero.
   template <class T>
   static T freed(const Params<T>& p, const At<T>& at, int who) {
-    const T before = at.state[friction_torque], after = left(p, at, who);
+    const T before = at.state[friction_torque], after = torque_left(p, at, who);
     return (before - after) * (before + after) / (T(2) * p.stiffness);
   }
   template <class T>
@@ -110,16 +111,16 @@ struct JenkinsElement : declared::JenkinsElement {
   static int next_piece(int piece, int who) { return who == turned ? piece_of(segment(piece), sticks) : who; }
   /// Torque of the spring where its piece is left.
   template <class T>
-  static T left(const Params<T>& p, const At<T>& at, int who) {
+  static T torque_left(const Params<T>& p, const At<T>& at, int who) {
     const int piece = mode(at.piece) == sticks ? next_piece(at.piece, who) : at.piece;
     return spring(p, At<T>{at.rate, at.state, at.input, piece, at.points});
   }
 
-  static constexpr double delay = 1e-4;  // [s]
+  static constexpr double delay = 1e-5;  // [s]
   // of the limit, by which the state may lag behind it while it slides
   static constexpr double lag = 1e-3;
 
-  /// Rate of the state, which while it slides is shown and nothing else, so that it may come after.
+  /// Rate of the state, which lags behind a limit that a speed changes: while it slides no torque depends on it.
   template <class T, class S>
   static S winding(const Params<T>& p, const At<S>& at) {
     const S along = growth(p, at) * at.rate;

@@ -192,7 +192,7 @@ bool start(Workspace<T>& ws) {
   refresh_loads(ws);
   ws.event_context.cause = Cause::initial;
   ws.event_context.contact = -1;
-  if constexpr (has_tangents<T>) ws.moved.here_time = ws.moved.last_time = ws.time, floor_sizes(ws);
+  if constexpr (has_tangents<T>) ws.moved.here_time = ws.moved.last_time = ws.time, forget_sizes(ws), floor_sizes(ws);
   ws.started = true;
   return true;
 }

@@ -4,6 +4,7 @@
 #include <clutchwork/components/direction.hpp>
 #include <clutchwork/components/kinds.hpp>
 #include <clutchwork/components/pieces.hpp>
+#include <clutchwork/contacts/impulses.hpp>
 #include <clutchwork/contacts/locked.hpp>
 #include <clutchwork/contacts/ratios.hpp>
 #include <clutchwork/contacts/sticking.hpp>
@@ -88,7 +89,8 @@ void turn_jumped(Workspace<T>& ws) {
     const T rate = rate_of(ws, b.direction);
     const int heading = value(rate) > 0 ? forward : backward;
     if (abs(value(rate)) <= slip_tolerance(ws) || heading == ws.heading[b.direction] || !law_turns(b)) continue;
-    ws.piece[b.direction] = b.piece = law_cross(ws, b, PresentRates<T>(ws, b).at, turned, ws.state);
+    leave_piece(ws, b, PresentRates<T>(ws, b).at, turned);
+    ws.piece[b.direction] = b.piece;
     ws.heading[b.direction] = heading;
   }
 }

@@ -84,12 +84,19 @@ bool leave_event(Form& form, Step<Form>& step) {
 
 // ---------------------------------------------------------------------------------------------------------- how large
 
+/// No motion and no derivative has had a size.
+template <class T>
+void forget_sizes(Workspace<T>& ws) {
+  const std::int64_t n = ws.sys.speeds + ws.sys.states;
+  for (std::int64_t i = 0; i < n; ++i) ws.moved.most[i] = 0;
+  for (std::int64_t i = 0; i < n * T::seen; ++i) ws.moved.largest[i] = 0;
+}
+
 /// Sizes that derivatives have at least, so that no step looks for digits in round-off: of what each direction changes
 /// the numbers of the model by. docs/theory/gradients.md (22)
 template <class T>
 void floor_sizes(Workspace<T>& ws) {
   constexpr double round_off = 1e-14;
-  for (int i = 0; i < ws.sys.speeds + ws.sys.states; ++i) ws.moved.most[i] = 0;
   double sum[T::seen] = {}, sum_at_zero[T::seen] = {};
   int n[T::seen] = {}, n_at_zero[T::seen] = {};
   auto look_at = [&](const T* number, std::int64_t count) {

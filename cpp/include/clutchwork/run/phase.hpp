@@ -340,7 +340,7 @@ class Phase : public StepSize<typename Form::Scalar> {
   /// Whether a step counts.
   CLUTCHWORK_INLINE bool judge(double error, bool finite) {
     error_ = finite ? error : infinity;
-    if (error_ <= 1 && ws_.options.work && rates_bend(ws_))
+    if (error_ <= 1 && ws_.options.work && drives_may_bend(ws_))
       error_ = larger(error_, work_error(taken_form(), taken_step()));
     if (!(error_ <= 1)) {
       reject();

@@ -40,7 +40,7 @@ class Variation {
   // of a part: how far ahead the change of the slopes with time is looked at, twice; loose tolerances need one look
   static constexpr double ahead = 1e-3, loose = 1e-8;
   // a direction may miss so much of itself in a part, of rtol: the error of the motion moves derivatives by more
-  static constexpr double allowed = 3;
+  static constexpr double allowed = 10;
 
   Form& form_;
   Step<Form>& step_;
@@ -52,7 +52,6 @@ class Variation {
   bool is_whole_ = false;                 ///< the image has the factor of the whole step
   bool known_ = false;                    ///< the slopes at the start of the next part
   const double look_once_;                ///< of a part, ahead of its start
-  double reached_[T::seen] = {};          ///< sizes of the directions up to the end of the part that is tried
   LinearStep<very_few, lanes> smallest_;  ///< matrices of a part, of so few numbers
   LinearStep<few, lanes> small_;
   bool mass_known_ = false;  ///< to them, of the present phase
@@ -273,7 +272,7 @@ class Variation {
         // one that was cut says nothing of longer ones
         ws_.moved.pace = last ? larger(pace, h * smaller(6.0, growth)) : h * smaller(6.0, growth);
         // a part that counts for nothing may end anywhere
-        for (int j = 0; j < As<X>::count; ++j) ws_.moved.size[j] = reached_[j];
+        std::swap(ws_.moved.largest, ws_.moved.reached);
         keep_few<X>();
         for (int i = 0; i < form.n(); ++i) row<X>(SlopeRow::first)[i] = row<X>(SlopeRow::last)[i];
         known_ = !has_ties();
@@ -569,7 +568,7 @@ class Variation {
   }
 
   /// The largest size of a component so far: one that swings passes zero, where its derivatives are as large as before.
-  double largest(int component, double size) const {
+  double largest_size(int component, double size) const {
     double& most = ws_.moved.most[component];
     return most = larger(most, size);
   }
@@ -584,11 +583,11 @@ class Variation {
     for (int i = 0; i < nv; ++i) {
       auto moved = typename As<X>::Seen(0), other = moved;
       each_share(form, i, [&](double z, int j) { moved += x(j) * z, other += y(j) * z; });
-      f(moved, other, largest(i, least + larger(plain.reduced.size[i], 1e-3 * fastest)));
+      f(moved, other, largest_size(i, least + larger(plain.reduced.size[i], 1e-3 * fastest)));
     }
     for (int i = 0; i < form.ns(); ++i) {
       const double most = larger(abs(step0(nz + i)), abs(step1(nz + i)));
-      f(x(nz + i), y(nz + i), largest(nv + i, plain.reduced.floor[i] / plain.options.rtol + most));
+      f(x(nz + i), y(nz + i), largest_size(nv + i, plain.reduced.floor[i] / plain.options.rtol + most));
     }
   }
   double step0(int i) const { return const_cast<Step<Plain>&>(step).y0()[i]; }
@@ -599,12 +598,15 @@ class Variation {
   template <class X, class Missed, class End>
   double error_of(Missed&& missed, End&& end) {
     constexpr int seen = As<X>::count;
-    double sum[seen] = {}, worst = 0;
-    double* size = reached_;
+    double sum[seen] = {}, size[seen], worst = 0;
+    const double* before = ws_.moved.largest;
+    double* reached = ws_.moved.reached;
     for (int j = 0; j < seen; ++j) size[j] = ws_.moved.size[j];
     each_component<X>(end, missed, [&](const auto& x, const auto& lost, double of) {
-      for (int j = 0; j < seen; ++j) size[j] = larger(size[j], abs(As<X>::at(x, j)) / of);
+      for (int j = 0; j < seen; ++j) reached[j] = larger(before[j], abs(As<X>::at(x, j)));
+      for (int j = 0; j < seen; ++j) size[j] = larger(size[j], reached[j] / of);
       for (int j = 0; j < seen; ++j) sum[j] += (As<X>::at(lost, j) / of) * (As<X>::at(lost, j) / of);
+      before += T::seen, reached += T::seen;
     });
     const double count = double(ws_.sys.speeds + form.ns());
     for (int j = 0; j < seen; ++j) {

@@ -52,8 +52,10 @@ struct Moved {
   std::int64_t parts = 0;                ///< of steps that the derivatives have taken
   int directions = T::seen;              ///< that are asked for, the first ones
   double begin = -infinity;              ///< [s] until then nothing moves
-  double size[T::seen] = {};             ///< largest that each direction has had, over the size of the motion
+  double size[T::seen] = {};             ///< least that each direction has, over the size of the motion
   double* most = nullptr;                ///< largest size that each speed and state has had
+  // of each of them: the largest of each direction so far, and that with the part that is tried
+  double *largest = nullptr, *reached = nullptr;
   bool work_left_out = false;            ///< steps are those of a run with work, which has no derivatives here
   typename T::Widest* slopes = nullptr;  ///< derivatives alone along a step: rows of the length of the motion
   Jacobian<double> other;                ///< of the image, at the other end of a step of the derivatives
@@ -64,6 +66,7 @@ struct Moved {
   static void lay_out(P& p, A& a, const Sizes& s) {
     a.scratch(p.row, s.row), a.scratch(p.slopes, SlopeRow::count * (s.speeds + s.states));
     a.scratch(p.moves, s.directions), a.scratch(p.most, s.speeds + s.states);
+    a.scratch(p.largest, T::seen * (s.speeds + s.states)), a.scratch(p.reached, T::seen * (s.speeds + s.states));
     const auto unknowns = s.full ? s.speeds + s.states : 0;
     Jacobian<double>::lay_out(p.other, a, s), a.scratch(p.other_whole, unknowns * unknowns);
     a.scratch(p.event, EventBuffer::room + 3 * s.contacts), a.scratch(p.graze, room);

@@ -103,6 +103,7 @@ struct Output {
   ReadNumbers read, inside;               ///< what is read of rows; of those in steps in which nothing happens
   double until = -1;                      ///< share of the step of the last row in it, -1: it has none
   T *whole = nullptr, *halves = nullptr;  ///< work of each branch over a step and its halves
+  T* missed = nullptr;                    ///< of each branch: what cubics miss of its power at the ends of a step
   double shown = 0;                       ///< [s] last row in a step
   bool skipped = false;                   ///< the last step was too short for rows
 
@@ -112,7 +113,7 @@ struct Output {
     a.scratch(p.angle, n.nodes), a.scratch(p.prescribed_angle, n.prescribed);
     a.scratch(p.power, 4 * (n.directions + n.prescribed + n.supplies + n.meters));
     a.scratch(p.since, n.directions + n.prescribed + n.supplies + n.meters), a.scratch(p.whole, n.directions);
-    a.scratch(p.halves, n.directions);
+    a.scratch(p.halves, n.directions), a.scratch(p.missed, 4 * n.directions);
   }
 };
 

@@ -23,7 +23,7 @@ inline void cross_branch(Run& ws, Branch<real>& b) {
   b.piece = ws.piece[b.direction];
   const int now = rate.at[0] < 0 ? backward : forward;
   if (now != heading && rate.at[0] != 0) {
-    if (law_turns(b)) b.piece = law_cross(ws, b, rate.at, turned, ws.state);
+    if (law_turns(b)) leave_piece(ws, b, rate.at, turned);
     heading = now;
   }
   const int d = b.direction, edges = edge_count(ws, d);
@@ -32,8 +32,7 @@ inline void cross_branch(Run& ws, Branch<real>& b) {
   for (int round = 0; round < most_passed; ++round) {
     int who = 0;
     if (law_margin(ws, b, rate.at, still, ws.state, ws.observed.state_rates, who).v >= 0) break;
-    take_heat(ws, d, law_freed(ws, b, rate.at, who, ws.state), ws.state);
-    b.piece = law_cross(ws, b, rate.at, who, ws.state);
+    leave_piece(ws, b, rate.at, who);
   }
   ws.piece[b.direction] = b.piece;
 }

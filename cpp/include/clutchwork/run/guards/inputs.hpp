@@ -23,6 +23,12 @@ bool inputs_follow(const Workspace<T>& ws) {
   return ws.in.n_shared_refs > 0 || ws.in.n_rate_refs > 0;
 }
 
+/// Whether speeds are prescribed, of which no state may feel a torque, beside inputs that vary.
+template <class T>
+bool drives_may_bend(const Workspace<T>& ws) {
+  return ws.sys.prescribed > 0 && (ws.in.n_varying > 0 || inputs_follow(ws));
+}
+
 /// All inputs at the share s of a step.
 template <class Form>
 void inputs_in(Form& form, Step<Form>& step, double s) {
