@@ -65,7 +65,7 @@ def test_what_keeps_the_bounds_is_no_problem(pressure):
 def test_what_is_out_of_bounds_is_named_with_its_time(pressure, words):
     (problem,) = found(pressure=pressure)
     assert words in problem
-    assert ": pressure on the piston" in problem
+    assert "(pressure on the piston)" in problem
 
 
 def test_a_share_has_no_unit():

@@ -23,7 +23,7 @@ void take_heat(const Workspace<T>& ws, int direction, T heat, T* state) {
 
 /// A branch leaves its piece; what its spring loses is heat.
 template <class T>
-void leave_piece(Workspace<T>& ws, Branch<T>& b, const T* rate, int who) {
+[[gnu::noinline]] void leave_piece(Workspace<T>& ws, Branch<T>& b, const T* rate, int who) {
   const T freed = law_freed(ws, b, rate, who, ws.state);
   b.piece = law_cross(ws, b, rate, who, ws.state);
   if (value(freed) != 0) take_heat(ws, b.direction, freed, ws.state);

@@ -142,23 +142,24 @@ void fill_nodes(const Workspace<T>& ws, const Snapshot<T>& shot, R* row) {
 }
 
 /// Which slip of contact c its torque resists; where it has none yet, that with which it begins to move.
-template <class Form, class T = typename Form::Scalar>
-int resisted(Form& form, const Snapshot<T>& shot, int c) {
-  const Workspace<T>& ws = form.ws;
+template <class T>
+int resisted(const Workspace<T>& ws, const Snapshot<T>& shot, int c) {
   const int d = int(ws.sys.elements) + c, k = ws.branch_of[d];
   auto slip = -value(ws.out.torque[d]);
-  if (slip == 0 && ws.contact.compliant[c] && k >= 0) slip = value(shot.rate[k]);
-  if (slip == 0 && ws.contact.compliant[c] && k >= 0) slip = value(form.rate(k, shot.d) + offset_slope(ws, k));
-  return slip < 0 ? backward : forward;
+  if (slip != 0 || !ws.contact.compliant[c] || k < 0) return slip < 0 ? backward : forward;
+  slip = value(shot.rate[k]);
+  if (slip != 0) return slip < 0 ? backward : forward;
+  T begins = rate_row(ws.sys, d).times(shot.dv);
+  for (int p = 0; p < ws.sys.prescribed; ++p) begins += prescribed_share(ws, d, p) * ws.in.prescribed_slope[p];
+  return value(begins) < 0 ? backward : forward;
 }
 
 /// Modes and static torques of the contacts.
-template <class Form, class R, class T = typename Form::Scalar>
-void fill_contacts(Form& form, const Snapshot<T>& shot, R* row) {
-  const Workspace<T>& ws = form.ws;
+template <class T, class R>
+void fill_contacts(const Workspace<T>& ws, const Snapshot<T>& shot, R* row) {
   for (int c = 0; c < ws.sys.contacts; ++c) {
     row[ws.row.contact_mode + c] = mode_shown(ws, shot, c);
-    row[ws.row.contact_capacity + c] = shown<R>(static_torque(ws, c, resisted(form, shot, c)));
+    row[ws.row.contact_capacity + c] = shown<R>(static_torque(ws, c, resisted(ws, shot, c)));
   }
 }
 
@@ -202,7 +203,7 @@ void fill_numbers(Form& form, Step<Form>& step, double s, double s_end, R* row) 
   for (int i = 0; i < sys.supplies; ++i) {
     row[ws.row.supply_power + i] = shown<R>(supply_power(ws, i, shot.y + form.nz()));
   }
-  fill_contacts(form, shot, row);
+  fill_contacts(ws, shot, row);
   if (sys.flows > 0) {
     shared_rates(ws, shot.rate, ws.observed.torque, shot.y + form.nz(), shot.d + form.nz());
     for (int f = 0; f < sys.flows; ++f) row[ws.row.flow + f] = shown<R>(flow_value(ws, f));

@@ -114,7 +114,7 @@ double signal_step(const Workspace<T>& ws) {
 /// there the cubics through the points of the step and of its halves miss the power by as much, in place of a sixteenth.
 /// docs/theory/integrators.md (16)
 template <class Form>
-double work_error(Form& form, Step<Form>& step) {
+[[gnu::noinline]] double work_error(Form& form, Step<Form>& step) {
   using T = typename Form::Scalar;
   // of the step times what a cubic misses at the end: at most so much is unseen; of what the longer one misses
   constexpr double unseen = 0.02, as_much = 0.25;
@@ -124,22 +124,21 @@ double work_error(Form& form, Step<Form>& step) {
   T *missed = ws.out.missed, *by_half = missed + 2 * ws.n_branches;
   for (int k = 0; k < ws.n_branches; ++k) whole[k] = halves[k] = T(0);
   for (int k = 0; k < 4 * ws.n_branches; ++k) missed[k] = T(0);
-  // `at` of a cubic: at the begin of its part, at its end
-  auto add = [&](double start, double width, T* sum, T* at_begin, T* at_end) {
+  // the step, its first half, its second one: of the step both ends are looked at, of each half that of the step
+  for (int part = 0; part < 3; ++part) {
+    const double start = part == 2 ? 0.5 : 0.0, width = part == 0 ? 1.0 : 0.5;
+    T *sum = part == 0 ? whole : halves, *at = part == 0 ? missed : by_half;
     for (int g = 0; g < 4; ++g) {
-      const double s = start + width * gauss.node[g];
       const auto& c = gauss.coef[g];
-      step.calls->observe(form, step, s);
+      step.calls->observe(form, step, start + width * gauss.node[g]);
       for (int k = 0; k < ws.n_branches; ++k) {
         const T power = ws.observed.torque[k] * ws.observed.rate[k];
         sum[k] += T(width * step.h * gauss.weight[g]) * power;
-        if (at_begin) at_begin[k] += T(c[0]) * power;
-        if (at_end) at_end[k] += T(c[0] + c[1] + c[2] + c[3]) * power;
+        if (part < 2) at[k] += T(c[0]) * power;
+        if (part != 1) at[ws.n_branches + k] += T(c[0] + c[1] + c[2] + c[3]) * power;
       }
     }
-  };
-  add(0, 1, whole, missed, missed + ws.n_branches);
-  add(0, 0.5, halves, by_half, nullptr), add(0.5, 0.5, halves, nullptr, by_half + ws.n_branches);
+  }
   double error = 0;
   for (int end = 0; end < 2; ++end) {
     step.calls->observe(form, step, end);

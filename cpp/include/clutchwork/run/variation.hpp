@@ -40,7 +40,7 @@ class Variation {
   // of a part: how far ahead the change of the slopes with time is looked at, twice; loose tolerances need one look
   static constexpr double ahead = 1e-3, loose = 1e-8;
   // a direction may miss so much of itself in a part, of rtol: the error of the motion moves derivatives by more
-  static constexpr double allowed = 10;
+  static constexpr double allowed = 3;
 
   Form& form_;
   Step<Form>& step_;
