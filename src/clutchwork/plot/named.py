@@ -6,6 +6,8 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+import numpy as np
+
 from clutchwork.plot import panels as looks_of
 from clutchwork.plot.curves import Curve, Panel, Side, thinned
 from clutchwork.plot.figure import figure_of, written
@@ -118,13 +120,16 @@ def curve_looks(curves: Sequence[Curve], runs: Sequence[str], colour: str) -> li
 def _words(axes: Axes, view: View, letter: float) -> None:
     """What happens, above the first panel, as far as there is room; letter, share of the width that one needs."""
     begin, end = view.begin, view.end
+    instants = sorted({event.time for _, event in view.marks})
+    shares = [(instant - begin) / (end - begin) for instant in instants]
     taken = 0.0
-    for instant in sorted({event.time for _, event in view.marks}):
+    for instant, share, following in zip(instants, shares, [*shares[1:], np.inf], strict=True):
         found = list(dict.fromkeys(happened(event) for _, event in view.marks if event.time == instant))
-        share, room = (instant - begin) / (end - begin), letter * len(found[0]) + 0.01
-        # beside its line where another word takes the room
+        room = letter * len(found[0]) + 0.01
+        # beside its line where another word takes the room; behind it only where it ends before the next one
         left = min(max(share - 0.5 * room, taken), 1.0 - room)
-        if len(found) > 1 or left < taken or left > share + BEHIND:
+        most = share + BEHIND if following > left + room else share
+        if len(found) > 1 or left < taken or left > most:
             continue
         taken = left + room
         axes.annotate(
