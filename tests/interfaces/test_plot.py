@@ -56,6 +56,12 @@ def test_what_happens_is_said_above_each_line_where_there_is_room() -> None:
     assert first.x1 < second.x0
 
 
+def test_signals_of_a_run_without_events() -> None:
+    d = cw.Driveline("nothing happens")
+    d.shaft("a", inertia=1.0, speed=3.0)
+    assert not d.simulate(1.0).plot("a.speed").axes[0].texts
+
+
 def test_the_zoom_shows_the_chosen_lock_up(run: cw.Trajectory) -> None:
     first = next(event for event in run.events if event.after == "locked")
     axes = run.plot(lockup=first).axes[1]

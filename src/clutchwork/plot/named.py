@@ -123,7 +123,7 @@ def _words(axes: Axes, view: View, letter: float) -> None:
     instants = sorted({event.time for _, event in view.marks})
     shares = [(instant - begin) / (end - begin) for instant in instants]
     taken = 0.0
-    for instant, share, following in zip(instants, shares, [*shares[1:], np.inf], strict=True):
+    for instant, share, following in zip(instants, shares, [*shares, np.inf][1:], strict=True):
         found = list(dict.fromkeys(happened(event) for _, event in view.marks if event.time == instant))
         room = letter * len(found[0]) + 0.01
         # beside its line where another word takes the room; behind it only where it ends before the next one
