@@ -85,6 +85,6 @@ class JenkinsElement(Heating):
         """No torque of the spring, and the twist at the start [rad]."""
         return (0.0, self.initial_twist)[: len(self.own_states())]
 
-    def stored(self, states: Sequence[float], torque: float) -> float:  # noqa: ARG002, its state alone tells
+    def stored(self, states: Sequence[float], torque: float) -> float:  # noqa: ARG002, its torque is that of the spring
         """Energy of the spring [J]."""
-        return 0.5 * states[0] * states[0] / self.stiffness
+        return 0.5 * torque * torque / self.stiffness
