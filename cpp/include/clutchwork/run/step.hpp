@@ -111,8 +111,8 @@ double signal_step(const Workspace<T>& ws) {
 
 /// Error of the work over a step in units of the tolerance, by halving. Where speeds are prescribed no state may feel
 /// the torque, so nothing else keeps the steps short enough for the quadrature. Next to an end no point sees a bend:
-/// there the cubics through the points of the step and of its halves miss the power by as much, in place of a sixteenth.
-/// docs/theory/integrators.md (16)
+/// there the cubics through the points of the step and of its halves miss the power by as much, in place of a
+/// sixteenth. docs/theory/integrators.md (16)
 template <class Form>
 [[gnu::noinline]] double work_error(Form& form, Step<Form>& step) {
   using T = typename Form::Scalar;

@@ -46,14 +46,14 @@ struct Moved {
   T* points = nullptr;   ///< of the curves
   T* row = nullptr;      ///< one row of output
   int n = 0;
-  Workspace<double>* plain = nullptr;    ///< its image without derivatives
-  double span = 0;                       ///< [s] steps that are taken where an event is met
-  double pace = infinity;                ///< [s] that a step of the derivatives may take
-  std::int64_t parts = 0;                ///< of steps that the derivatives have taken
-  int directions = T::seen;              ///< that are asked for, the first ones
-  double begin = -infinity;              ///< [s] until then nothing moves
-  double size[T::seen] = {};             ///< least that each direction has, over the size of the motion
-  double* most = nullptr;                ///< largest size that each speed and state has had
+  Workspace<double>* plain = nullptr;  ///< its image without derivatives
+  double span = 0;                     ///< [s] steps that are taken where an event is met
+  double pace = infinity;              ///< [s] that a step of the derivatives may take
+  std::int64_t parts = 0;              ///< of steps that the derivatives have taken
+  int directions = T::seen;            ///< that are asked for, the first ones
+  double begin = -infinity;            ///< [s] until then nothing moves
+  double size[T::seen] = {};           ///< least that each direction has, over the size of the motion
+  double* most = nullptr;              ///< largest size that each speed and state has had
   // of each of them: the largest of each direction so far, and that with the part that is tried
   double *largest = nullptr, *reached = nullptr;
   bool work_left_out = false;            ///< steps are those of a run with work, which has no derivatives here
