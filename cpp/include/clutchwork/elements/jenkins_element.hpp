@@ -88,8 +88,8 @@ struct JenkinsElement : declared::JenkinsElement {
     state[friction_torque] = torque_left(p, at, who);
     return kept(p, at, next_piece(at.piece, who));
   }
-  /// What the spring loses where its piece is left: where a speed has jumped, what the limit is less than its torque;
-  /// else what its state lags behind the limit, which may be below zero.
+  /// Energy that the spring loses where its piece is left: where a speed has jumped, with the torque above the limit;
+  /// else what the lag of its state was worth, which may be below zero.
   template <class T>
   static T freed(const Params<T>& p, const At<T>& at, int who) {
     const T before = at.state[friction_torque], after = torque_left(p, at, who);
