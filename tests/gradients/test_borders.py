@@ -145,3 +145,53 @@ def test_a_lag_that_comes_and_goes_leaves_nothing_behind() -> None:
     assert np.array_equal(function(function.x0), first)
     assert np.array_equal(function(with_lag), lagging)
     assert function(function.x0)[1] == pytest.approx(d.simulate(0.2)["f.heat"][-1], rel=1e-5)
+
+
+def overrunning(*, reverses: bool) -> cw.Driveline:
+    """A freewheel drives a disc, and a clutch beside it holds with the freewheel, or nothing against it.
+
+    The torque that drives both falls through zero, where both let go at once.
+    """
+    d = cw.Driveline("overrunning")
+    a, b = d.shaft("a", inertia=0.3), d.shaft("b", inertia=0.02)
+    torque: Any = cw.Ramp(height=-25.0, duration=0.5, start=0.1, offset=10.0) if reverses else 0.0
+    d.add(cw.Torque("t", shaft=a, torque=torque))
+    d.add(cw.OneWayClutch("f", base=a, follower=b))
+    d.add(cw.FundamentalClutch("c", base=b, follower=a, kinetic=0.0, lower=-2.0, upper=0.0))
+    return d
+
+
+@pytest.mark.parametrize("rtol", [1e-6, 1e-9])
+def test_a_set_whose_load_passes_zero_lets_go_when_it_does(rtol: float) -> None:
+    names = ["t.torque.offset", "t.torque.height", "t.torque.duration", "t.torque.start"]
+    function = cw.differentiable(
+        overrunning(reverses=True), 0.6, of=[cw.break_away("f"), cw.break_away("c")], by=names, rtol=rtol, atol=rtol / 100
+    )
+    # the torque is zero at the start of the ramp and so much of it as its offset is of its height
+    expected = [0.5 / 25.0, 0.5 * 10.0 / 25.0**2, 10.0 / 25.0, 1.0]
+    np.testing.assert_allclose(function.gradient().matrix, [expected, expected], rtol=1e-7)
+
+
+def test_a_set_that_is_closed_without_load_has_a_side_for_each_sign_of_it() -> None:
+    # one way both move together, the other way the disc stays behind
+    model = overrunning(reverses=False)
+    for side, expected in (("right", 0.6 / 0.32), ("left", 0.0)):
+        function = cw.differentiable(model, 0.6, of="b.speed", by="t.torque", side=side)
+        assert function.gradient().matrix[0, 0] == pytest.approx(expected, rel=1e-9, abs=1e-12)
+    with pytest.raises(cw.ClutchworkError, match="closed without load"):
+        cw.differentiable(model, 0.6, of="b.speed", by="t.torque").gradient()
+
+
+@pytest.mark.parametrize("rtol", [1e-6, 1e-9])
+def test_a_peak_at_the_end_of_a_long_step_moves_with_its_knot(rtol: float) -> None:
+    # the slip is prescribed, so steps are as long as they like, and the friction winds up until the pressure ends
+    d = cw.Driveline("wound")
+    s, law = d.shaft("s", inertia=0.1), cw.Mykhalevych(static=0.12, kinetic=0.1, elastic=0.02, speed=2.0, viscous=0.3)
+    d.add(cw.PrescribedSpeed("m", shaft=s, speed=1.0))
+    pressure = cw.Pulse(height=1e5, period=1.0, width=0.04)
+    d.add(cw.Clutch("c", base=d.housing, follower=s, friction=law, gain=1e-3, pressure=pressure))
+    found = cw.differentiable(d, 0.1, of=cw.peak("c.torque"), by="c.pressure.width", rtol=rtol, atol=rtol / 100)
+    wound = 0.04 / 0.02 + 0.3 * 0.5
+    torque = 100.0 * (0.12 * np.tanh(wound) - 0.02 * (1.0 - np.exp(-(0.5**2))))
+    assert found(found.x0) == pytest.approx(torque, rel=1e-9)
+    assert found.gradient().matrix[0, 0] == pytest.approx(100.0 * 0.12 / np.cosh(wound) ** 2 / 0.02, rel=1e-6)

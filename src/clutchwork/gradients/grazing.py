@@ -64,7 +64,7 @@ def loads() -> tuple[int, ...]:
 @cache
 def limits() -> tuple[int, ...]:
     """Numbers in the core of the guards of what locked contacts hold."""
-    return tuple(number for number, (name, _) in enumerate(derivatives().guards) if name == "multiplier")
+    return tuple(number for number, (name, _) in enumerate(derivatives().guards) if name in ("multiplier", "set"))
 
 
 def _on_borders(grazes: Array) -> NDArray[np.bool_]:

@@ -21,8 +21,8 @@ Array = NDArray[np.float64]
 
 # the last coefficient of the slope of an acceleration, of the largest slope in the run, from which on a step is split
 BENT = 1e-3
-# that of a signal with its extreme inside of a step, of its largest size, and how far around it the step is split; and
-# from which on what was split is so again
+# that of a signal with its extreme in a step, of its largest size, and how far around it the step is split; and from
+# which on what was split is so again
 SHARP, AROUND, STILL_SHARP = 1e-7, 1 / 16, 1e-5
 
 
@@ -39,7 +39,7 @@ def resolved(steps: Steps, accelerations: Sequence[Array]) -> Steps:
 
 
 def around_tops(steps: Steps, extremes: Sequence[tuple[Extreme, Array]], sharp: float = SHARP) -> Steps:
-    """The steps with an extreme inside split so that it is in a short part, where polynomials miss its instant.
+    """The steps with an extreme split so that it is in a short part, where polynomials miss its instant or its slope.
 
     Parameters: values in the rows of each step, a line for each step; sharp, from which coefficient on.
     """
@@ -47,7 +47,7 @@ def around_tops(steps: Steps, extremes: Sequence[tuple[Extreme, Array]], sharp: 
     for one, values in extremes:
         size = float(np.abs(values).max(initial=0.0))
         for top in candidates(one, steps, values):
-            if 0.0 < top.share < 1.0 and top.rough * steps.length[top.step] > sharp * size:
+            if top.begins not in (0, len(steps)) and top.rough * steps.length[top.step] > sharp * size:
                 cuts.setdefault(top.step, set()).update((top.share - AROUND, top.share + AROUND))
     return _split(steps, cuts)
 

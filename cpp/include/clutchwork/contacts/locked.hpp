@@ -425,6 +425,22 @@ template <class T>
   return least / (factor * limit.size);
 }
 
+/// What a set without loads misses of its load along the way in which it gives way, at most zero [N m]. It falls evenly
+/// where the factor jumps: of a freewheel and a contact without capacity beside it, whose load passes zero.
+template <class T>
+[[gnu::noinline]] T set_deficit(Workspace<T>& ws, int k, const T* carried) {
+  const DependentSet<T> set = dependent_set(ws, k, carried, T(0));
+  LimitLoad<T> limit = limit_of(ws, set);
+  const T room = limit.solve() - T(1);
+  double most = 0;
+  int steepest = 0;
+  for (int i = 0; i < set.n; ++i) {
+    const double price = abs(value(limit.price[i]));
+    if (price > most) most = price, steepest = i;
+  }
+  return most > 0 ? room * limit.size / abs(limit.price[steepest]) : T(0);
+}
+
 /// The largest factor of the load of a set that is at its limit. Members without friction of their own hold a multiple
 /// of any size there or none: then with bounds widened by round-off, which is that of all torques, as far as it takes.
 template <class T>

@@ -158,6 +158,15 @@ void note_border(Workspace<T>& ws, int what, int component, const T& margin) {
   m.graze[m.n++] = {ws.time, double(what), double(component), infinity, apart};
 }
 
+/// What is left before a border at an instant.
+template <class G, class Form, class T = typename Form::Scalar>
+T border(Form& form, Step<Form>& step, Hit& hit, double time) {
+  if constexpr (requires { G::border(form, step, hit, time, step.y0()); })
+    return G::border(form, step, hit, time, step.y0());
+  else
+    return G::at(form, step, hit, time, step.y0(), hit.who);
+}
+
 /// Borders of a guard at which the present state is, and which move with the numbers: on which side it is is open.
 template <class G, class Form>
 void note_borders_of(Form& form, Step<Form>& step, int place) {
@@ -171,7 +180,7 @@ void note_borders_of(Form& form, Step<Form>& step, int place) {
     for (const double later : looks) {
       Hit hit;
       hit.what = place, hit.index = index, ws.in.time = -infinity;
-      const T margin = G::at(form, step, hit, ws.time + later, step.y0(), hit.who);
+      const T margin = border<G>(form, step, hit, ws.time + later);
       if (abs(value(margin)) > near * G::scale(form, hit, step.y0())) return;
       note_border(ws, place, G::component(ws, hit), margin);
       if (looks[1] == 0) return;
@@ -192,7 +201,8 @@ template <class Form>
 void note_borders(Form& form, Step<Form>& step, Borders which) {
   GuardList::each([&](auto tag, int place) {
     using G = typename decltype(tag)::type;
-    constexpr bool flips = std::is_same_v<G, LineFlip>, holds = std::is_same_v<G, TorqueLimit>;
+    constexpr bool flips = std::is_same_v<G, LineFlip>;
+    constexpr bool holds = std::is_same_v<G, TorqueLimit> || std::is_same_v<G, SetLimit>;
     if constexpr (requires { G::each_border(form.ws, [](int) {}); }) {
       if (which == Borders::all || holds || (flips && which == Borders::carried)) note_borders_of<G>(form, step, place);
     }
@@ -287,27 +297,28 @@ bool has_jumped(const Workspace<T>& ws, double guard, double scale) {
   return guard < -least * scale && ws.time - ws.moved.here_time <= 1e-12 * (1 + abs(ws.time));
 }
 
-/// How a hit moves whose guard jumps there, and its rate, by a cubic through what is left shortly before it: from as
-/// far as that is smooth, since round-off hides how much is left near by.
+/// How a hit moves whose guard jumps there, and its rate, by a cubic through what is left shortly before or behind it:
+/// from as far as that is smooth, since round-off hides how much is left near by.
 template <class G, class Form, class T = typename Form::Scalar>
 T sudden_shift(Form& form, Step<Form>& step, const Hit& hit, const T* velocity, double& rate) {
   constexpr double farthest = 1e-2, closest = 1e-4, smooth = 1e-5;
   Workspace<T>& ws = form.ws;
+  const double side = G::told_from(ws);
   T *probe = step.k(1), guard = T(0);
   double least = infinity;
   for (double share = farthest; share > 0.5 * closest && least > smooth; share *= 0.1) {
-    const double reach = share * larger(ws.moved.span, 1e-9);
+    const double reach = side * share * larger(ws.moved.span, 1e-9);
     T left[4];
     for (int k = 0; k < 4; ++k) {
-      const double back = (k + 1) * reach;
-      for (int i = 0; i < form.n(); ++i) probe[i] = step.y0()[i] - velocity[i] * back;
+      const double later = (k + 1) * reach;
+      for (int i = 0; i < form.n(); ++i) probe[i] = step.y0()[i] + velocity[i] * later;
       ws.in.time = -infinity;
-      left[k] = G::left(form, step, hit, ws.time - back, probe);
+      left[k] = G::left(form, step, hit, ws.time + later, probe);
     }
     auto sum = [&](double a, double b, double c, double d) {
       return T(a) * left[0] + T(b) * left[1] + T(c) * left[2] + T(d) * left[3];
     };
-    const double slope = value(sum(26, -57, 42, -11)) / (6 * reach), other = value(sum(5, -8, 3, 0)) / (2 * reach);
+    const double slope = value(sum(-26, 57, -42, 11)) / (6 * reach), other = value(sum(-5, 8, -3, 0)) / (2 * reach);
     const double apart = slope != 0 ? abs(other / slope - 1) : 1e300;
     if (apart < least) rate = slope, guard = sum(4, -6, 4, -1), least = apart;
   }
@@ -329,8 +340,8 @@ T hit_shift(Form& form, Step<Form>& step, const Hit& hit, const T* velocity) {
     note_graze(ws, hit.what, component, with_jump, shift);
     return shift;
   }
-  if constexpr (requires { G::is_sudden(ws, 0.0); }) {
-    if (G::is_sudden(ws, value(guard))) {
+  if constexpr (requires { G::is_sudden(ws, hit, 0.0); }) {
+    if (G::is_sudden(ws, hit, value(guard))) {
       double rate = 0;
       const T shift = sudden_shift<G>(form, step, hit, velocity, rate);
       note_graze(ws, hit.what, component, abs(rate), shift);

@@ -62,6 +62,39 @@ struct SetLimit : OwnScale {
   static bool watches(const Workspace<T>& ws) {
     return ws.held.n_sets > 0;
   }
+  /// Largest torque of the independent contacts of a set.
+  template <class T>
+  static double largest_load(const Workspace<T>& ws, int k, const T* torque) {
+    double most = 0;
+    const int first = ws.held.set_first[k];
+    for (int i = first; i < first + ws.held.set_rank[k]; ++i)
+      most = larger(most, abs(value(torque[ws.held.set_place[i]])));
+    return most;
+  }
+  /// Call f for each set under next to no load with a member that holds one way alone.
+  template <class T, class F>
+  static void each_border(const Workspace<T>& ws, F&& f) {
+    const double little = 1e-6 * torque_size(*ws.moved.plain);
+    for (int k = 0; k < ws.held.n_sets; ++k) {
+      bool one_way = false;
+      for (int i = ws.held.set_first[k]; i < ws.held.set_first[k + 1]; ++i)
+        one_way = one_way || free_way(ws, ws.held.set_member[i]) != 0;
+      if (one_way && largest_load(ws, k, ws.step_start.multiplier) <= little) f(k);
+    }
+  }
+  /// The load of such a set that moves most.
+  template <class Form, class T = typename Form::Scalar>
+  static T border(Form& form, Step<Form>& step, const Hit& hit, double t, const T* y) {
+    Workspace<T>& ws = form.ws;
+    see_torques(form, step, t, y);
+    const int first = ws.held.set_first[hit.index];
+    T most = T(0);
+    for (int i = first; i < first + ws.held.set_rank[hit.index]; ++i) {
+      const T load = without_value(ws.observed.carried[ws.held.set_place[i]]);
+      if (largest_difference(load, T(0)) > largest_difference(most, T(0))) most = load;
+    }
+    return most;
+  }
   template <class Form>
   [[gnu::noinline]] static void find(Form& form, Step<Form>& step, Hit& hit) {
     using T = typename Form::Scalar;
@@ -93,16 +126,25 @@ struct SetLimit : OwnScale {
     see_torques(form, step, t, y);
     return set_room(form.ws, hit.index, form.ws.observed.carried, T(0), form.ws.loads.now);
   }
-  /// What is left before a limit at which a set gives way that holds any multiple of its load or none.
+  /// Where what is left is told of a limit at which a set gives way that holds any multiple of its load or none: before
+  /// it where members follow loads, else behind it.
+  template <class T>
+  static double told_from(const Workspace<T>& ws) {
+    return ws.sys.loads > 0 && holds_loads(ws) ? -1.0 : 1.0;
+  }
   template <class Form, class T = typename Form::Scalar>
   static T left(Form& form, Step<Form>& step, const Hit& hit, double t, const T* y) {
+    Workspace<T>& ws = form.ws;
     see_torques(form, step, t, y);
-    return set_slack(form.ws, hit.index, form.ws.observed.carried, form.ws.loads.now);
+    if (told_from(ws) > 0) return set_deficit(ws, hit.index, ws.observed.carried);
+    return set_slack(ws, hit.index, ws.observed.carried, ws.loads.now);
   }
-  /// Whether it is such a one, by its guard at the limit.
+  /// Whether it is such a one, by its guard at the limit, or nearly so: its load is next to none of that before.
   template <class T>
-  static bool is_sudden(const Workspace<T>& ws, double guard) {
-    return abs(guard) > 0.5 && ws.sys.loads > 0 && holds_loads(ws);
+  static bool is_sudden(const Workspace<T>& ws, const Hit& hit, double guard) {
+    if (abs(guard) > 0.5) return true;
+    const double before = largest_load(*ws.moved.plain, hit.index, ws.moved.plain->step_start.multiplier);
+    return told_from(ws) > 0 && largest_load(ws, hit.index, ws.observed.carried) <= 1e-2 * before;
   }
   template <class T>
   static int component(const Workspace<T>& ws, const Hit& hit) {
