@@ -98,7 +98,7 @@ def test_a_value_without_a_derivative_takes_no_other_with_it():
 def test_hardly_anything_is_refused_without_cause():
     """At most one derivative in a hundred is refused where differences from both sides agree; none is one of two."""
     found = refusals.Count()
-    for seed in range(amount(8)):
+    for seed in range(amount(24)):
         kind = list(KINDS)[seed % len(KINDS)]
         found = found + refusals.counted(KINDS[kind](2000 + seed), seed, 4)
     assert len(found.without_cause) <= 0.01 * found.pairs, found.without_cause
