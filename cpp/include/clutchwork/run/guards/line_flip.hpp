@@ -1,6 +1,7 @@
 #pragma once
 #include <clutchwork/motion/mesh_loads.hpp>
 #include <clutchwork/run/event.hpp>
+#include <clutchwork/run/guards/inputs.hpp>
 #include <clutchwork/run/guards/torques.hpp>
 #include <clutchwork/run/hit.hpp>
 #include <clutchwork/run/integrator/memory.hpp>
@@ -32,7 +33,8 @@ struct LineFlip {
     for (int i = 0; i < ws.loads.n_sliding; ++i) {
       const int l = ws.loads.sliding[i], k = ws.loads.branch[i];
       const double start = value(ws.step_start.clearance[l]), end = value(ws.step_end.clearance[l]);
-      if (is_ample(start, end, value(ws.step_start.closing[l]), value(ws.step_end.closing[l]), step.h)) continue;
+      const bool ample = is_ample(start, end, value(ws.step_start.closing[l]), value(ws.step_end.closing[l]), step.h);
+      if (ample && !rates_bend(ws)) continue;
       fit(form, step);
       const double noise = 1e-12 * torque_size(ws);
       auto f = [&](double s) {

@@ -5,6 +5,7 @@
 #include <clutchwork/contacts/sticking.hpp>
 #include <clutchwork/motion/lost_ratios.hpp>
 #include <clutchwork/run/clamp_loads.hpp>
+#include <clutchwork/run/guards/inputs.hpp>
 #include <clutchwork/run/guards/torques.hpp>
 #include <clutchwork/run/hit.hpp>
 #include <clutchwork/run/integrator/memory.hpp>
@@ -125,6 +126,8 @@ struct TorqueLimit {
     int* watched = ws.guard.limit;
     int n = 0;
     double m0 = infinity, m1 = infinity;
+    // drifts know nothing of how accelerations that are prescribed change
+    const bool bend = rates_bend(ws);
     for (int a = 0; a < ws.held.n; ++a) {
       if (is_rigid(ws, ws.held.contact[a])) {
         const double s = rigid_departure(form, step, a, hit.s);
@@ -135,7 +138,7 @@ struct TorqueLimit {
       double before, after;
       const bool holds = holds_on(ws, a, step.h, before, after);
       const bool pole = ws.ratios.n > 0 && has_pole(ws, a);
-      if (holds && !ends_elsewhere(ws, hit) && !pole && !passes_no_load(ws, ws.held.contact[a])) continue;
+      if (holds && !bend && !ends_elsewhere(ws, hit) && !pole && !passes_no_load(ws, ws.held.contact[a])) continue;
       if (pole) {
         fit(form, step);
         auto margin_of = [&](double s) {
