@@ -164,9 +164,8 @@ def overrunning(*, reverses: bool) -> cw.Driveline:
 @pytest.mark.parametrize("rtol", [1e-6, 1e-9])
 def test_a_set_whose_load_passes_zero_lets_go_when_it_does(rtol: float) -> None:
     names = ["t.torque.offset", "t.torque.height", "t.torque.duration", "t.torque.start"]
-    function = cw.differentiable(
-        overrunning(reverses=True), 0.6, of=[cw.break_away("f"), cw.break_away("c")], by=names, rtol=rtol, atol=rtol / 100
-    )
+    of = [cw.break_away("f"), cw.break_away("c")]
+    function = cw.differentiable(overrunning(reverses=True), 0.6, of=of, by=names, rtol=rtol, atol=rtol / 100)
     # the torque is zero at the start of the ramp and so much of it as its offset is of its height
     expected = [0.5 / 25.0, 0.5 * 10.0 / 25.0**2, 10.0 / 25.0, 1.0]
     np.testing.assert_allclose(function.gradient().matrix, [expected, expected], rtol=1e-7)

@@ -242,3 +242,24 @@ def test_a_position_that_jumps_by_little_is_refused_and_round_off_is_none() -> N
     d = cw.Driveline("round-off")
     d.add(cw.PrescribedPosition("p", shaft=d.shaft("a", inertia=1.0), position=round_off))
     assert d.simulate(0.1).status == "done"
+
+
+@pytest.mark.parametrize("work", [True, False])
+@pytest.mark.parametrize("share", [0.9, 0.99, 0.999, 0.9999])
+@pytest.mark.parametrize("sets", [False, True])
+def test_what_is_held_breaks_away_at_the_crest_of_a_swing(share: float, work: bool, sets: bool) -> None:
+    # the torque of what follows is J A w sin(w t), above the capacity around its crest alone
+    inertia, speed, pace = 0.05, 1.4, 120.0
+    d = cw.Driveline("crest")
+    a, b = d.shaft("a"), d.shaft("b", inertia=inertia, speed=-speed)
+    swing = cw.Sine(amplitude=speed, frequency=pace / (2.0 * np.pi), phase=-0.5 * np.pi)
+    d.add(cw.PrescribedSpeed("swing", shaft=a, speed=swing))
+    most = share * inertia * speed * pace
+    for n in range(2 if sets else 1):
+        force = most / 0.1 / (2 if sets else 1)
+        law = cw.Coulomb(static=0.1, kinetic=0.02)
+        d.add(cw.PlateContact(f"c{n}", base=a, follower=b, friction=law, gain=1.0, normal_force=force, locked=True))
+    run = d.simulate(0.02, work=work)
+    first = [one.time for one in run.events if one.before == "locked"]
+    assert first, "it holds more than it can"
+    assert first[0] == pytest.approx(np.arcsin(share) / pace, rel=1e-7)

@@ -37,13 +37,6 @@ CLUTCHWORK_INLINE auto is_ample(R start, R end, R start_slope, R end_slope, R h)
   return smaller(start, end) > larger(abs(end - start), h * larger(abs(start_slope), abs(end_slope)));
 }
 
-/// Whether the end of a step says nothing of what is held up to where something was found: a capacity may bend in
-/// between.
-template <class T>
-CLUTCHWORK_INLINE bool ends_elsewhere(const Workspace<T>& ws, const Hit& hit) {
-  return ws.guard.n_bending > 0 && !hit.none();
-}
-
 /// A guard that has its own scale already, or is a slip.
 struct OwnScale {
   template <class Form, class T = typename Form::Scalar>

@@ -2,6 +2,7 @@
 #include <clutchwork/components/input.hpp>
 #include <clutchwork/motion/dynamics.hpp>
 #include <clutchwork/motion/shared.hpp>
+#include <clutchwork/run/hit.hpp>
 #include <clutchwork/run/integrator/memory.hpp>
 #include <clutchwork/workspace.hpp>
 
@@ -15,6 +16,13 @@ bool rates_bend(const Workspace<T>& ws) {
     if (ws.in.signal[ws.sys.prescribed_input[p]].varying) return true;
   }
   return false;
+}
+
+/// Whether the ends of a step say little of what is held between them: where a capacity may bend before what was found,
+/// and where prescribed accelerations vary, of which drifts know nothing.
+template <class T>
+[[gnu::noinline]] bool ends_say_little(const Workspace<T>& ws, const Hit& hit) {
+  return (ws.guard.n_bending > 0 && !hit.none()) || rates_bend(ws);
 }
 
 /// Whether some inputs follow the state, so that they are known inside a step from its interpolant alone.

@@ -33,7 +33,7 @@ template <class Form>
   };
   const double before = value(ws.step_start.room[k]);
   hit.take(first_at_no_load(form, step, f, before, hit.s), k);
-  if (!ends_elsewhere(ws, hit) && !rates_bend(ws) && least >= ample - 1 && f(0.5) >= ample - 1) return;
+  if (!ends_say_little(ws, hit) && least >= ample - 1 && f(0.5) >= ample - 1) return;
   hit.take(first_dip(f, before, value(ws.step_end.room[k]), hit.s), k);
 }
 
@@ -104,7 +104,7 @@ struct SetLimit : OwnScale {
       const double before = value(ws.step_start.room[k]), after = value(ws.step_end.room[k]);
       const double coming = room_ahead(ws, k, ws.step_start, step.h), gone = room_ahead(ws, k, ws.step_end, -step.h);
       const double change = larger(abs(after - before), larger(before - coming, after - gone));
-      bool bends = rates_bend(ws);
+      bool bends = false;
       if (ws.ratios.n > 0) find_limit_beside(form, step, k, hit);
       if (ws.sys.loads > 0 && holds_loads(ws)) {
         find_loaded_limit(form, step, k, smaller(smaller(before, after), smaller(coming, gone)), hit);
@@ -112,7 +112,7 @@ struct SetLimit : OwnScale {
       }
       for (int i = ws.held.set_first[k]; i < ws.held.set_first[k + 1]; ++i)
         bends = bends || load_bends(ws, ws.held.set_member[i]);
-      if (!bends && !ends_elsewhere(ws, hit) && smaller(before, after) > change) continue;
+      if (!bends && !ends_say_little(ws, hit) && smaller(before, after) > change) continue;
       fit(form, step);
       auto f = [&](double s) {
         torques_at(form, step, s);

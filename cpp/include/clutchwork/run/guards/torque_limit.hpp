@@ -126,8 +126,6 @@ struct TorqueLimit {
     int* watched = ws.guard.limit;
     int n = 0;
     double m0 = infinity, m1 = infinity;
-    // drifts know nothing of how accelerations that are prescribed change
-    const bool bend = rates_bend(ws);
     for (int a = 0; a < ws.held.n; ++a) {
       if (is_rigid(ws, ws.held.contact[a])) {
         const double s = rigid_departure(form, step, a, hit.s);
@@ -138,7 +136,7 @@ struct TorqueLimit {
       double before, after;
       const bool holds = holds_on(ws, a, step.h, before, after);
       const bool pole = ws.ratios.n > 0 && has_pole(ws, a);
-      if (holds && !bend && !ends_elsewhere(ws, hit) && !pole && !passes_no_load(ws, ws.held.contact[a])) continue;
+      if (holds && !pole && !ends_say_little(ws, hit) && !passes_no_load(ws, ws.held.contact[a])) continue;
       if (pole) {
         fit(form, step);
         auto margin_of = [&](double s) {
