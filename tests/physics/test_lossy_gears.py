@@ -378,3 +378,28 @@ def test_what_breaks_away_elsewhere_moves_no_load_at_rest(seed):
     for name in ("g0", "g1", "b0", "b1", "b2"):
         # shares of one load to round-off
         assert slips[f"{name}.torque"] == pytest.approx(rests[f"{name}.torque"], abs=1e-12), name
+
+
+@pytest.mark.parametrize("weak_first", [True, False])
+@pytest.mark.parametrize("efficiency", [0.5, 0.8, 0.95])
+def test_a_gear_in_a_loop_loses_what_the_strong_clutch_lets_it_carry(efficiency, weak_first):
+    """Two locked clutches close a loop over a gear that turns; one of them holds next to nothing."""
+    drive, load, inertias = 20.0, 5.0, (0.1, 0.2, 0.5)
+    d = cw.Driveline("loop")
+    s, a, b = (d.shaft(name, inertia=own, speed=10.0) for name, own in zip("sab", inertias, strict=True))
+    d.add(cw.LossyGear("g", input=a, output=b, ratio=1.0, efficiency=efficiency))
+    ends = {"weak": (b, 1e-3), "strong": (a, 1e3)}
+    for name in ends if weak_first else reversed(ends):
+        law = cw.Coulomb(static=1.0, kinetic=1.0)
+        follower, force = ends[name]
+        d.add(cw.PlateContact(name, base=s, follower=follower, friction=law, gain=1.0, normal_force=force, locked=True))
+    d.add(cw.Torque("drive", shaft=s, torque=drive))
+    d.add(cw.Torque("load", shaft=b, torque=-load))
+    run = d.simulate(0.05, **TIGHT)
+    expected = (drive - load / efficiency) / (inertias[0] + inertias[1] + inertias[2] / efficiency)
+    # the weak clutch may take a thousandth of a newton metre
+    assert run["s.acceleration"] == pytest.approx(expected, rel=1e-3)
+    lost = (1.0 / efficiency - 1.0) * (load + inertias[2] * expected)
+    assert run["g.torque"] == pytest.approx(-lost, rel=1e-3)
+    assert np.all(np.abs(run["weak.torque"]) <= 1e-3 * (1 + 1e-9))
+    assert residual(run) < 1e-9

@@ -270,6 +270,21 @@ void list_driven(Workspace<T>& ws) {
   }
 }
 
+/// Contacts that hold more come first: what slips and follows a load moves with the torques of the independent
+/// contacts, the first of a set. docs/theory/load-dependent.md, rule 3
+template <class T>
+[[gnu::noinline]] void sort_by_strength(const Workspace<T>& ws, int* contact, int n) {
+  auto strength = [&](int c) {
+    return smaller(value(capacity_of(ws, c, forward)), value(capacity_of(ws, c, backward)));
+  };
+  for (int a = 1; a < n; ++a) {
+    const int c = contact[a];
+    int b = a;
+    for (; b > 0 && strength(contact[b - 1]) < strength(c); --b) contact[b] = contact[b - 1];
+    contact[b] = c;
+  }
+}
+
 /// Sort the locked contacts into independent and redundant ones; all of them are independent where no directions depend
 /// on others. The torques of the independent ones make the loads: those that follow loads are the last of them.
 template <class T>
@@ -280,9 +295,13 @@ void list_locked(Workspace<T>& ws) {
   for (int follow = 0; follow <= int(apart); ++follow) {
     for (int c = 0; c < ws.sys.contacts; ++c) {
       if (ws.contact.mode[c] != locked || (apart && int(ws.loads.of[c] >= 0) != follow)) continue;
-      h.in_set[n] = 0, h.all[n] = h.contact[n] = c, ++n;
+      h.in_set[n] = 0, h.all[n++] = c;
+    }
+    if constexpr (!has_lanes<T>) {
+      if (apart && follow == 0) sort_by_strength(ws, h.all, n);
     }
   }
+  for (int a = 0; a < n; ++a) h.contact[a] = h.all[a];
   h.n = h.n_fixed = n;
   h.n_redundant = h.n_sets = h.n_driven = 0;
   h.too_many = h.vanished = false;
@@ -476,26 +495,32 @@ bool holds_as_moved(const Workspace<T>& ws, const DependentSet<T>& set, const in
   return slides;
 }
 
-/// Torques of all contacts of set k in place of those of its independent contacts: `give` takes contact and torque.
-template <class T, class Give>
-void share_load(Workspace<T>& ws, int k, const T* carried, Give&& give) {
+/// Torques of all contacts of set k, in the order of its members, in place of those of its independent contacts.
+template <class T>
+[[gnu::noinline]] const T* shares_of(Workspace<T>& ws, int k, const T* carried) {
   const DependentSet<T> set = dependent_set(ws, k, carried, T(0));
   const int* member = ws.held.set_member + ws.held.set_first[k];
-  if (ws.sys.loads > 0 && holds_loads(ws)) {
+  bool moved = ws.sys.loads > 0 && holds_as_moved(ws, set, member);
+  if (!moved && ws.sys.loads > 0 && holds_loads(ws)) {
     outer_loads(ws, k, ws.loads.now, carried);
     LoadedLimit<T> limit = loaded_limit(ws, set, member, T(0));
     // what holds the largest multiple of the load holds the load in proportion
-    const bool moved = holds_as_moved(ws, set, member);
-    const T factor = moved ? T(0) : solve_at_limit(limit);
-    if (moved || (value(limit.size) > 0 && !(value(factor) > 0))) {
-      for (int i = 0; i < set.n; ++i) give(member[i], i < set.rank ? set.load[i] : T(0));
-      return;
-    }
-    for (int i = 0; i < set.n; ++i) give(member[i], value(limit.size) > 0 ? limit.x[i] / factor : T(0));
-    return;
+    const T factor = solve_at_limit(limit);
+    moved = value(limit.size) > 0 && !(value(factor) > 0);
+    for (int i = 0; i < set.n; ++i) set.x[i] = value(limit.size) > 0 ? limit.x[i] / factor : T(0);
+  } else if (!moved) {
+    Shares<T>{set, ws.set.deflection, ws.set.step, ws.set.residual, ws.set.matrix}.solve();
   }
-  Shares<T>{set, ws.set.deflection, ws.set.step, ws.set.residual, ws.set.matrix}.solve();
-  for (int i = 0; i < set.n; ++i) give(member[i], set.x[i]);
+  for (int i = 0; i < set.n && moved; ++i) set.x[i] = i < set.rank ? set.load[i] : T(0);
+  return set.x;
+}
+
+/// The same by contact: `give` takes contact and torque.
+template <class T, class Give>
+void share_load(Workspace<T>& ws, int k, const T* carried, Give&& give) {
+  const int first = ws.held.set_first[k], n = ws.held.set_first[k + 1] - first;
+  const T* share = shares_of(ws, k, carried);
+  for (int i = 0; i < n; ++i) give(ws.held.set_member[first + i], share[i]);
 }
 
 /// Torques of the locked contacts, independent contacts given, by contact: `give` takes contact and torque.

@@ -34,7 +34,7 @@ struct LineFlip {
       const int l = ws.loads.sliding[i], k = ws.loads.branch[i];
       const double start = value(ws.step_start.clearance[l]), end = value(ws.step_end.clearance[l]);
       const bool ample = is_ample(start, end, value(ws.step_start.closing[l]), value(ws.step_end.closing[l]), step.h);
-      if (ample && !ends_say_little(ws, {})) continue;
+      if (ample && !ends_say_little(ws, hit)) continue;
       fit(form, step);
       const double noise = 1e-12 * torque_size(ws);
       auto f = [&](double s) {
