@@ -21,6 +21,8 @@ CLUTCHWORK_INLINE Mask<R> doubtful_inline(const Workspace<Lanes<R>>& ws, const L
     clear = clear && stays_clear(ws, g.branch, g.sign, g.level, h, ws.noise, start, end);
   }
   for (int a = 0; a < ws.held.n; ++a) clear = clear && holds_on(ws, a, h, start, end);
+  // ends say little of what is held beside prescribed speeds that vary
+  for (int p = 0; ws.held.n > 0 && p < ws.sys.prescribed; ++p) clear = clear && !ws.in.varies[ws.sys.n_input_refs + p];
   clear = clear && !nears_rest(ws);
   // open contacts that have started to move get their direction
   for (int k = ws.n_branches; ws.guard.n_undirected > 0 && k < ws.n_rates; ++k) {
