@@ -194,3 +194,35 @@ def test_a_peak_at_the_end_of_a_long_step_moves_with_its_knot(rtol: float) -> No
     torque = 100.0 * (0.12 * np.tanh(wound) - 0.02 * (1.0 - np.exp(-(0.5**2))))
     assert found(found.x0) == pytest.approx(torque, rel=1e-9)
     assert found.gradient().matrix[0, 0] == pytest.approx(100.0 * 0.12 / np.cosh(wound) ** 2 / 0.02, rel=1e-6)
+
+
+def test_shares_of_a_set_have_no_kink_where_two_capacities_are_equal() -> None:
+    # a freewheel counts with the mean of what both clutches carry, which is half of it all
+    d = cw.Driveline("set")
+    a, b = d.shaft("a", inertia=0.3), d.shaft("b", inertia=0.2)
+    d.add(cw.Torque("t", shaft=a, torque=30.0))
+    d.add(cw.Brake("holds", shaft=b, friction=COULOMB, gain=1.0, normal_force=1e4))
+    d.add(cw.OneWayClutch("f", base=a, follower=b))
+    for name in ("c1", "c2"):
+        d.add(cw.Clutch(name, base=a, follower=b, friction=COULOMB, gain=1.0, normal_force=200.0))
+    function = cw.differentiable(d, 0.1, of=["f.torque", "c1.torque", "c2.torque"], by="c1.gain")
+    assert function(function.x0) == pytest.approx([15.0, 7.5, 7.5], rel=1e-12)
+    # of the load half a share of one capacity in both, whose derivative is that of T1 / (2 (T1 + T2))
+    assert function.gradient().matrix[:, 0] == pytest.approx([0.0, 30.0 / 8.0, -30.0 / 8.0], rel=1e-9, abs=1e-9)
+
+
+@pytest.mark.parametrize("rests", [0.0, 0.02])
+def test_a_wheel_that_rests_at_a_point_of_its_table_has_a_side_for_each_way_that_the_point_moves(rests: float) -> None:
+    # the ratio of the speeds is that of the first point, below which the table is held
+    d = cw.Driveline("coupling")
+    a, b = d.shaft("a", inertia=0.1, speed=1.0 if rests else 0.0), d.shaft("b", inertia=0.2, speed=30.0)
+    d.add(cw.Brake("holds", shaft=a, friction=COULOMB, gain=1.0, normal_force=40.0 / rests if rests else 1e4))
+    table = {"speed_ratio": (0.0, 0.3, 1.0), "capacity": (3e-4, 2e-4, 0.0)}
+    d.add(cw.FluidCoupling("c", base=a, follower=b, **table))
+    step = 1e-5
+    for side, way in (("left", -step), ("right", step)):
+        function = cw.differentiable(d, 0.2, of="b.speed", by="c.speed_ratio.values[1]", side=side)
+        expected = (function(function.x0 + way) - function(function.x0)) / way
+        assert function.gradient().matrix[0, 0] == pytest.approx(expected[0], rel=1e-3, abs=1e-9)
+    with pytest.raises(cw.ClutchworkError, match="from one piece to another"):
+        cw.differentiable(d, 0.2, of="b.speed", by="c.speed_ratio.values[1]").gradient()

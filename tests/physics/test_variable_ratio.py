@@ -209,6 +209,22 @@ def test_a_ratio_that_jumps_from_zero_beside_what_another_holds_jams():
     assert (run.status, run.time[-1], run["b.speed"][-1]) == ("jammed", 0.5, 10.0)
 
 
+def test_a_ratio_that_leaves_zero_where_two_others_hold_jams_at_once():
+    """A rack and a sprocket of another radius hold the mass: not even round-off moves it, with torques of its inverse."""
+    d = cw.Driveline("rack")
+    m, pinion, wheel, motor = d.mass("m", mass=0.366), d.shaft("pinion"), d.shaft("wheel"), d.shaft("motor")
+    d.add(cw.RackPinion("rack", shaft=pinion, mass=m, radius=0.133))
+    d.add(cw.PolygonSprocket("sprocket", shaft=pinion, mass=m, teeth=84, pitch=0.00837))
+    d.add(cw.RollingWheel("rolls", shaft=wheel, mass=m, radius=0.443))
+    ratio = cw.Ramp(height=9.24, duration=0.0068, start=0.05)
+    d.add(cw.VariableRatio("gear", input=wheel, output=motor, ratio=ratio))
+    d.add(cw.PrescribedSpeed("drive", shaft=motor, speed=1.54))
+    with pytest.warns(cw.StoppedEarly, match="'gear'"):
+        run = d.simulate(0.1)
+    assert (run.status, run.time[-1], run["m.speed"][-1]) == ("jammed", 0.05, 0.0)
+    assert not run["gear.torque"].any() and not run["sprocket.torque"].any()
+
+
 def test_a_ratio_that_leaves_zero_beside_the_housing_goes_on_at_rest():
     d = cw.Driveline("grounded")
     a = d.shaft("a", inertia=1.0)

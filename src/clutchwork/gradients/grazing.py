@@ -137,6 +137,8 @@ def moving_apart(
             yield time, f"{name} is closed without load from {time:.9g} s on, and a little less opens it"
         elif abs(time - begin) <= SAME * (1.0 + abs(begin)):
             yield time, f"{name} begins where it goes from one piece to another; move a start value, or that border"
+        elif graze[KIND] in borders() and graze[INDEX] == np.inf:
+            yield time, f"{name} rests from {time:.9g} s on where it goes from one piece to another; move that border"
         else:
             what = f"two events at {time:.9g} s, of which {name} is one, move apart with the numbers; separate them"
             yield time, what

@@ -78,10 +78,11 @@ def _shares(held: Holding, members: NDArray[np.intp]) -> tuple[Array, Array]:
     way, every = np.where(torque > 0.0, 0, 1), np.arange(len(members))
     bound, change = bounds[way, every], changes[way, every]
     finite = np.isfinite(bound)
-    # one without a bound counts with the largest of the set
-    known = np.where(np.isfinite(bounds), bounds, 0.0)
-    largest = np.unravel_index(int(np.argmax(known)), known.shape)
-    free, free_change = (known[largest], changes[largest]) if known[largest] > 0.0 else (1.0, 0.0)
+    # one without a bound counts with the mean of what all others carry together in both ways
+    known = np.isfinite(bounds)
+    free, free_change = 0.5 * bounds[known].sum(), 0.5 * changes[known].sum(axis=0)
+    if free == 0.0:
+        free, free_change = 1.0, np.zeros_like(free_change)
     bound, change = np.where(finite, bound, free), np.where(finite[:, None], change, free_change)
     size = np.where(bound > 0.0, bound, 1.0)
     at_bound = finite & (np.abs(torque) >= (1.0 - 1e-12) * bound)

@@ -269,6 +269,9 @@ concept SwitchingLaw =
     };
 inline constexpr int turned = -1;
 
+/// Who a guard is asked for that shall see those alone that rest on their borders.
+inline constexpr int resting = -2;
+
 /// Switching torque element that lets stored energy go where it leaves a piece: how much of it becomes heat at once
 /// [J].
 template <class E>

@@ -8,13 +8,15 @@ namespace clutchwork {
 inline constexpr double border_slack = 1e-10;
 
 /// The least of several guards, and whose it is. Its time derivative is as large as those of all, for each may be next.
+/// One that rests on its border does not end the piece, unless those that rest are asked for.
 template <class S>
 struct Least {
   S least = S(1e300);
   S change = S(0);
   int& who;
+  const bool rests;
 
-  explicit Least(int& whose) : who(whose) {}
+  explicit Least(int& whose) : who(whose), rests(whose == resting) {}
   void watch(const S& guard, int number) {
     bool moves = false;
     if constexpr (requires { guard.d; }) {
@@ -23,8 +25,7 @@ struct Least {
         moves = moves || value(guard.d[i]) != 0;
       }
     }
-    // one that rests on its border does not end the piece
-    if (value(guard) == 0 && !moves) return;
+    if ((value(guard) == 0 && !moves) != rests) return;
     if (value(guard) < value(least)) least = plain_of(guard), who = number;
   }
   S margin() const { return least + change; }

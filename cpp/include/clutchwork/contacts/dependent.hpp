@@ -214,8 +214,8 @@ struct Shares {
     double scale = 0;
     free_stiffness = T(0);
     for (int i = 0; i < set.n; ++i) {
-      if (value(set.upper[i]) < infinity) free_stiffness = larger(free_stiffness, set.upper[i]);
-      if (value(set.lower[i]) > -infinity) free_stiffness = larger(free_stiffness, -set.lower[i]);
+      if (value(set.upper[i]) < infinity) free_stiffness += T(0.5) * set.upper[i];
+      if (value(set.lower[i]) > -infinity) free_stiffness -= T(0.5) * set.lower[i];
     }
     if (value(free_stiffness) == 0) free_stiffness = T(1);
     for (int r = 0; r < set.rank; ++r) deflection[r] = T(0), scale = larger(scale, abs(value(set.load[r])));

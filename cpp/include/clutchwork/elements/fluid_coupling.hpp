@@ -67,7 +67,7 @@ struct FluidCoupling : declared::FluidCoupling {
   }
   template <class T, class S>
   static int settle(const Params<T>& p, const At<S>& at) {
-    int who;
+    int who = turned;
     if (value(margin(p, at, who)) >= 0) return at.piece;
     const List ratios = list_of(p.speed_ratio, at.points);
     const auto base = value(at.rates[Way::base]), follower = value(at.rates[Way::follower]);

@@ -172,12 +172,13 @@ void resolve_tie(const Ratios<T>& r, const Tied<S>& w, int t) {
   }
 }
 
-/// Factor L D L' of the mobility of the ties; one that depends on those before it counts as none.
-/// docs/theory/varying-ratios.md (6)
+/// Factor L D L' of the mobility of the ties; one that depends on those before it, to the round-off of all of them,
+/// counts as none. docs/theory/varying-ratios.md (6)
 template <class T, class S>
 void factor_ties(const Ratios<T>& r, const Tied<S>& w) {
   constexpr double least = 1e-15;
   const int m = r.ties;
+  S* sizes = w.wanted;
   for (int t = 0; t < m; ++t) {
     double size = 0;
     const S* own = w.share + t * r.rows;
@@ -195,6 +196,8 @@ void factor_ties(const Ratios<T>& r, const Tied<S>& w) {
       w.gram[t * m + u] = s;
       if (u < t) w.gram[t * m + u] = value(w.gram[u * m + u]) != 0 ? s / w.gram[u * m + u] : S(T(0));
     }
+    for (int j = 0; j < t; ++j) size += value(w.gram[t * m + j] * w.gram[t * m + j] * sizes[j]);
+    sizes[t] = S(T(size));
     if (!(value(w.gram[t * m + t]) > least * size)) w.gram[t * m + t] = S(T(0));
   }
 }

@@ -168,8 +168,9 @@ T border(Form& form, Step<Form>& step, Hit& hit, double time) {
 }
 
 /// Borders of a guard at which the present state is, and which move with the numbers: on which side it is is open.
+/// `who`: resting for those that no motion leaves.
 template <class G, class Form>
-void note_borders_of(Form& form, Step<Form>& step, int place) {
+void note_borders_of(Form& form, Step<Form>& step, int place, int who = turned) {
   constexpr double near = 1e-9;
   using T = typename Form::Scalar;
   Workspace<T>& ws = form.ws;
@@ -179,9 +180,9 @@ void note_borders_of(Form& form, Step<Form>& step, int place) {
   G::each_border(ws, [&](int index) {
     for (const double later : looks) {
       Hit hit;
-      hit.what = place, hit.index = index, ws.in.time = -infinity;
+      hit.what = place, hit.index = index, hit.who = who, ws.in.time = -infinity;
       const T margin = border<G>(form, step, hit, ws.time + later);
-      if (abs(value(margin)) > near * G::scale(form, hit, step.y0())) return;
+      if (abs(value(margin)) > (who == resting ? 0.0 : near * G::scale(form, hit, step.y0()))) return;
       note_border(ws, place, G::component(ws, hit), margin);
       if (looks[1] == 0) return;
     }
@@ -203,6 +204,7 @@ void note_borders(Form& form, Step<Form>& step, Borders which) {
     using G = typename decltype(tag)::type;
     constexpr bool flips = std::is_same_v<G, LineFlip>;
     constexpr bool holds = std::is_same_v<G, TorqueLimit> || std::is_same_v<G, SetLimit>;
+    if constexpr (std::is_same_v<G, PieceEnd>) note_borders_of<G>(form, step, place, resting);
     if constexpr (requires { G::each_border(form.ws, [](int) {}); }) {
       if (which == Borders::all || holds || (flips && which == Borders::carried)) note_borders_of<G>(form, step, place);
     }
