@@ -224,5 +224,54 @@ def test_a_wheel_that_rests_at_a_point_of_its_table_has_a_side_for_each_way_that
         function = cw.differentiable(d, 0.2, of="b.speed", by="c.speed_ratio.values[1]", side=side)
         expected = (function(function.x0 + way) - function(function.x0)) / way
         assert function.gradient().matrix[0, 0] == pytest.approx(expected[0], rel=1e-3, abs=1e-9)
-    with pytest.raises(cw.ClutchworkError, match="from one piece to another"):
+    with pytest.raises(cw.ClutchworkError, match="at a border of its table|from one piece to another"):
         cw.differentiable(d, 0.2, of="b.speed", by="c.speed_ratio.values[1]").gradient()
+
+
+@pytest.mark.parametrize("seed", range(4))
+def test_what_rests_at_a_point_of_a_table_does_so_to_round_off(seed: int) -> None:
+    # two gears make the ratio of the speeds that is a point of the table, but for the last digit of their product
+    rng = np.random.default_rng(seed)
+    first, speed = rng.uniform(0.5, 2.0), rng.uniform(10.0, 40.0)
+    d = cw.Driveline("coupling")
+    a, b, c = (d.shaft(name, inertia=0.1) for name in "abc")
+    d.add(cw.PrescribedSpeed("m", shaft=b, speed=speed))
+    d.add(cw.Gear("g1", input=b, output=c, ratio=1.0 / first))
+    d.add(cw.Gear("g2", input=c, output=a, ratio=first / 0.3))
+    d.add(cw.FluidCoupling("f", base=a, follower=b, speed_ratio=(0.0, 0.3, 1.0), capacity=(3e-4, 2e-4, 0.0)))
+    with pytest.raises(cw.ClutchworkError, match="at a border of its table|from one piece to another"):
+        cw.differentiable(d, 0.1, of="f.heat", by="f.speed_ratio.values[2]").gradient()
+
+
+def warmed() -> tuple[cw.Driveline, cw.Shaft]:
+    d = cw.Driveline("warmed")
+    a = d.shaft("a", inertia=1.0, speed=50.0)
+    hot, cold = d.thermal("hot", capacity=1000.0, temperature=400.0), d.ambient("cold", temperature=300.0)
+    table = [(0.0, 1.0), (50.0, 2.0), (100.0, 5.0)]
+    d.add(cw.Convection("fan", hot=hot, cold=cold, conductance=table, speed=a))
+    return d, a
+
+
+def test_a_fan_that_turns_at_a_point_of_its_table_has_a_side_for_each_way() -> None:
+    model, _ = warmed()
+    for side, way in (("left", -1e-3), ("right", 1e-3)):
+        function = cw.differentiable(model, 1.0, of="hot.temperature", by="a.speed", side=side)
+        expected = (function(function.x0 + way) - function(function.x0)) / way
+        assert function.gradient().matrix[0, 0] == pytest.approx(expected[0], rel=1e-3)
+    with pytest.raises(cw.ClutchworkError, match="one piece to another|border of its table"):
+        cw.differentiable(model, 1.0, of="hot.temperature", by="a.speed").gradient()
+
+
+def test_a_prescribed_speed_that_jumps_by_nothing_jumps_with_its_height() -> None:
+    # both shafts of a differential are prescribed, so that the jump is an impulse at the third one
+    d = cw.Driveline("jump")
+    s0, s1, s2 = (d.shaft(name, inertia=own) for name, own in (("s0", 0.6), ("s1", 0.01), ("s2", 0.2)))
+    free = d.shaft("free", inertia=0.3)
+    d.add(cw.Differential("d", carrier=s0, left=s2, right=s1))
+    d.add(cw.PrescribedSpeed("m1", shaft=s1, speed=5.0))
+    d.add(cw.PrescribedSpeed("m0", shaft=s0, speed=cw.Step(height=0.0, start=0.05, offset=-20.0)))
+    d.add(cw.SpringDamper("k", base=s2, follower=free, stiffness=20.0, damping=0.1))
+    function = cw.differentiable(d, 0.1, of=["m1.work", "m0.work", "s2.speed", "free.speed"], by="m0.speed.height")
+    step = 1e-3
+    expected = (function(function.x0 + step) - function(function.x0 - step)) / (2.0 * step)
+    assert function.gradient().matrix[:, 0] == pytest.approx(expected, rel=1e-6)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from itertools import permutations
 from math import atan, cos, pi, tan
 
 import numpy as np
@@ -380,26 +381,49 @@ def test_what_breaks_away_elsewhere_moves_no_load_at_rest(seed):
         assert slips[f"{name}.torque"] == pytest.approx(rests[f"{name}.torque"], abs=1e-12), name
 
 
-@pytest.mark.parametrize("weak_first", [True, False])
-@pytest.mark.parametrize("efficiency", [0.5, 0.8, 0.95])
-def test_a_gear_in_a_loop_loses_what_the_strong_clutch_lets_it_carry(efficiency, weak_first):
-    """Two locked clutches close a loop over a gear that turns; one of them holds next to nothing."""
-    drive, load, inertias = 20.0, 5.0, (0.1, 0.2, 0.5)
+DRIVE, LOAD = 20.0, 5.0
+
+
+def loop(inertias, gear, contacts, efficiency):
+    """Shafts that turn together: contacts from shaft to shaft and a lossy gear of ratio 1 close a loop."""
     d = cw.Driveline("loop")
-    s, a, b = (d.shaft(name, inertia=own, speed=10.0) for name, own in zip("sab", inertias, strict=True))
-    d.add(cw.LossyGear("g", input=a, output=b, ratio=1.0, efficiency=efficiency))
-    ends = {"weak": (b, 1e-3), "strong": (a, 1e3)}
-    for name in ends if weak_first else reversed(ends):
-        law = cw.Coulomb(static=1.0, kinetic=1.0)
-        follower, force = ends[name]
-        d.add(cw.PlateContact(name, base=s, follower=follower, friction=law, gain=1.0, normal_force=force, locked=True))
-    d.add(cw.Torque("drive", shaft=s, torque=drive))
-    d.add(cw.Torque("load", shaft=b, torque=-load))
-    run = d.simulate(0.05, **TIGHT)
-    expected = (drive - load / efficiency) / (inertias[0] + inertias[1] + inertias[2] / efficiency)
+    shaft = {name: d.shaft(name, inertia=own, speed=10.0) for name, own in inertias.items()}
+    d.add(cw.LossyGear("g", input=shaft[gear[0]], output=shaft[gear[1]], ratio=1.0, efficiency=efficiency))
+    law = cw.Coulomb(static=1.0, kinetic=1.0)
+    for name, (base, follower, force) in contacts.items():
+        ends = {"base": shaft[base], "follower": shaft[follower]}
+        if force == np.inf:
+            d.add(cw.OneWayClutch(name, **ends))
+        else:
+            d.add(cw.PlateContact(name, **ends, friction=law, gain=1.0, normal_force=force, locked=True))
+    d.add(cw.Torque("drive", shaft=shaft["s"], torque=DRIVE))
+    d.add(cw.Torque("load", shaft=shaft["b"], torque=-LOAD))
+    return d.simulate(0.05, **TIGHT)
+
+
+@pytest.mark.parametrize("weak_first", [True, False])
+@pytest.mark.parametrize("strong", [1e3, np.inf], ids=["clutch", "freewheel"])
+@pytest.mark.parametrize("efficiency", [0.8, 0.95])
+def test_a_gear_in_a_loop_loses_what_the_strong_path_lets_it_carry(efficiency, strong, weak_first):
+    """Two locked contacts close a loop over a gear that turns; one of them holds next to nothing."""
+    contacts = {"weak": ("s", "b", 1e-3), "strong": ("s", "a", strong)}
+    order = contacts if weak_first else dict(reversed(contacts.items()))
+    run = loop({"s": 0.1, "a": 0.2, "b": 0.5}, "ab", order, efficiency)
+    expected = (DRIVE - LOAD / efficiency) / (0.1 + 0.2 + 0.5 / efficiency)
     # the weak clutch may take a thousandth of a newton metre
     assert run["s.acceleration"] == pytest.approx(expected, rel=1e-3)
-    lost = (1.0 / efficiency - 1.0) * (load + inertias[2] * expected)
+    lost = (1.0 / efficiency - 1.0) * (LOAD + 0.5 * expected)
     assert run["g.torque"] == pytest.approx(-lost, rel=1e-3)
     assert np.all(np.abs(run["weak.torque"]) <= 1e-3 * (1 + 1e-9))
     assert residual(run) < 1e-9
+
+
+@pytest.mark.parametrize("order", list(permutations(["A", "B", "weak"])), ids="-".join)
+@pytest.mark.parametrize(("first", "second"), [(5.0, 0.01), (0.1, 0.2)])
+def test_a_weak_clutch_beside_a_chain_of_strong_ones_carries_nothing_whatever_the_inertias(order, first, second):
+    contacts = {"A": ("s", "a", 1e3), "B": ("a", "c", 1e3), "weak": ("s", "b", 1e-3)}
+    inertias = {"s": first, "a": second, "c": 0.1, "b": 0.5}
+    run = loop(inertias, "cb", {name: contacts[name] for name in order}, 0.8)
+    expected = (DRIVE - LOAD / 0.8) / (first + second + 0.1 + 0.5 / 0.8)
+    assert run["s.acceleration"] == pytest.approx(expected, rel=1e-3)
+    assert np.all(np.abs(run["weak.torque"]) <= 1e-3 * (1 + 1e-9))

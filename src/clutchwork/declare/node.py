@@ -425,6 +425,11 @@ class Law(Declared):
         """Whether its torque has a kink or a jump at a slip that is not an event."""
         return False
 
+    @property
+    def steep(self) -> str:
+        """Why its rates have no derivatives at some states; nothing where they have."""
+        return ""
+
     def problems(self) -> Found:
         """What the bounds of single values cannot say, as (quantity, what is wrong, remedy)."""
         return []

@@ -15,13 +15,14 @@ from clutchwork.base.classes import dataclass
 from clutchwork.base.errors import ModelError
 from clutchwork.gradients.bends import Bends, bends_of, spread
 from clutchwork.gradients.doubts import Doubt, Doubts
-from clutchwork.gradients.grazing import noted, together
+from clutchwork.gradients.grazing import noted, passed_unseen, together
 from clutchwork.gradients.jerk import massless
 from clutchwork.gradients.lines import UNKNOWN, UNSEEN, Line, lines, unknown, without_derivatives
 from clutchwork.gradients.measures import Context, Measure, measures
 from clutchwork.gradients.runs import Run, RunPoint, Runs
 from clutchwork.gradients.settled import NEARER, STEP, Beside, Settling
 from clutchwork.gradients.task import GradientTask, GradientValues
+from clutchwork.gradients.words import Words
 from clutchwork.results.gradient import NoGradient
 from clutchwork.sweeps.outputs import Integral
 
@@ -48,12 +49,13 @@ class Exact:
 
     task: GradientTask
     again: bool = False  # whether it is asked for what another one knows too little of
+    words: Words | None = None  # of the driveline as functions of the numbers, where they are known
     _others: dict[tuple[tuple[str, int, int], ...], Exact] = field(default_factory=dict, repr=False)  # by structure
 
     @cached_property
     def runs(self) -> Runs:
         """The runs."""
-        return Runs(self.task)
+        return Runs(self.task, self.words)
 
     @cached_property
     def _asked(self) -> Context:
@@ -70,7 +72,7 @@ class Exact:
         if rtol >= options.rtol:
             return None
         changes = {"rtol": rtol, "atol": options.atol * rtol / options.rtol}
-        return Exact(replace(self.task, options=options.changed(changes)), again=True)
+        return Exact(replace(self.task, options=options.changed(changes)), again=True, words=self.runs.words)
 
     # ---------------------------------------------------------------------------------------------------------- values
 
@@ -159,6 +161,8 @@ class Exact:
             point, run, without_derivatives(self.task.labels, found)
         ):
             return None
+        if any(passed_unseen(self.task.system, run.primal.grazes)):
+            return None
         whole = run.primal.functional()
         for share, one in zip(weights.tolist(), found, strict=True):
             whole.include(one.changes[0], share)
@@ -201,9 +205,17 @@ class Exact:
             run, found = self.lines(point)
         except NoGradient as none:
             raise bends_of(none, self.task) from None
-        notes = [*run.notes, *noted(self.task.system, run.primal.grazes, run.primal.decided)]
+        notes = [*run.notes, *noted(self.task.system, run.primal.grazes, run.primal.decided), *self._steep]
         notes += [f"{one.name}: {STILL_ROUGH}" for one in found if self._repeats(one)]
         return found, self._doubts(point, run, found), tuple(dict.fromkeys(notes))
+
+    @cached_property
+    def _steep(self) -> list[str]:
+        """Laws whose rates have no derivatives at some states."""
+        known = wiring(self.task.system)
+        laws = [(one.name, one.component.friction) for one in (*known.contacts, *known.elements)]
+        at = f"at {self.runs.wanted.begin:g} s and later"
+        return [f"{name} {at}: {law.steep}; derivatives have few digits" for name, law in laws if law and law.steep]
 
     def _known_without(self, x: Array, bent: Mapping[int, str]) -> tuple[list[Line], list[Doubt], tuple[str, ...]]:
         """The same where some numbers are at kinks of the driveline: these are in doubt."""
@@ -247,7 +259,10 @@ class Exact:
 
     def _lines(self, point: RunPoint) -> tuple[Run, list[Line]]:
         run, outputs = self._run(point, len(self.task.labels)), self.task.outputs
-        return run, lines(run, outputs, self.task.labels, self._asked, point.sizes)
+        found = lines(run, outputs, self.task.labels, self._asked, point.sizes)
+        for time, why in passed_unseen(self.task.system, run.primal.grazes):
+            found = [one.without_derivatives(why) if one.until >= time else one for one in found]
+        return run, found
 
     def _run(self, point: RunPoint, results: int) -> Run:
         """A run, followed back where results are few and numbers many."""

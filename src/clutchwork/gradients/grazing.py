@@ -39,6 +39,11 @@ TOUCHED = 1e-5
 CROWD, CROWDED = 6, 1e-4
 BY_NAME = {name: number for number, (name, _) in CAUSES.items()}
 BORDERS = ("line", "law", "process", "flip")
+# at these something may stay, though nothing moves with them
+STAYS = ("multiplier", "set", "bend")
+# kind of a jump of a torque that no guard sees
+UNSEEN = 1000
+ASK = "; ask for one side of it"
 IMPACT, JAM, DRIVEN = BY_NAME["impact"], BY_NAME["jam"], (BY_NAME["input"], BY_NAME["other event"])
 AT = {name: column for column, (name, _) in enumerate(EVENT)}
 
@@ -67,9 +72,14 @@ def limits() -> tuple[int, ...]:
     return tuple(number for number, (name, _) in enumerate(derivatives().guards) if name in ("multiplier", "set"))
 
 
+@cache
+def _staying() -> tuple[int, ...]:
+    return tuple(number for number, (name, _) in enumerate(derivatives().guards) if name in STAYS)
+
+
 def _on_borders(grazes: Array) -> NDArray[np.bool_]:
-    """Those at which another piece begins, or nothing is held from then on by what holds one way alone."""
-    stays = np.isin(grazes[:, KIND], limits()) & np.isinf(grazes[:, INDEX])
+    """Those at which another piece begins, or which something stays at: a point of a table, a load of zero."""
+    stays = np.isin(grazes[:, KIND], _staying()) & np.isinf(grazes[:, INDEX])
     found: NDArray[np.bool_] = np.isin(grazes[:, KIND], borders()) | stays
     return found
 
@@ -132,13 +142,17 @@ def moving_apart(
     for graze in np.unique(met[met[:, DIFFERENCE] * sizes.max() > APART], axis=0):
         time, name = float(graze[TIME]), component(system, int(graze[COMPONENT]), int(graze[KIND]))
         if graze[KIND] in loads() and graze[INDEX] == np.inf:
-            yield time, f"the load of {name} is zero from {time:.9g} s on, and a little more turns it either way"
+            yield time, f"the load of {name} is zero from {time:.9g} s on, and a little more turns it either way{ASK}"
         elif graze[KIND] in limits() and graze[INDEX] == np.inf and graze[COMPONENT] >= 0:
-            yield time, f"{name} is closed without load from {time:.9g} s on, and a little less opens it"
+            what = f"{name} is closed without load, or holds all that it can, from {time:.9g} s on"
+            yield time, f"{what}, and a little change lets it go{ASK}"
         elif abs(time - begin) <= SAME * (1.0 + abs(begin)):
             yield time, f"{name} begins where it goes from one piece to another; move a start value, or that border"
-        elif graze[KIND] in borders() and graze[INDEX] == np.inf:
-            yield time, f"{name} rests from {time:.9g} s on where it goes from one piece to another; move that border"
+        elif graze[INDEX] == np.inf:
+            what = (
+                f"{name} stays at a border of its table or its law from {time:.9g} s on, and numbers move that border"
+            )
+            yield time, f"{what}{ASK}"
         else:
             what = f"two events at {time:.9g} s, of which {name} is one, move apart with the numbers; separate them"
             yield time, what
@@ -248,6 +262,15 @@ def noted(system: System, grazes: Array, decided: Array) -> Iterator[str]:
             name = component(system, int(graze[COMPONENT]), int(graze[KIND]))
             measure = f"abs(dg/dt)/scale = {graze[INDEX]:.2g} 1/s, below {WARNED:g} 1/s"
             yield f"{name} at {graze[TIME]:.9g} s barely passes zero: {measure}; derivatives are large and local"
+
+
+def passed_unseen(system: System, grazes: Array) -> Iterator[tuple[float, str]]:
+    """Slips that have passed zero with which a torque jumps, where no event is: from then on [s] nothing is known."""
+    for time, kind, number, _, _ in grazes.tolist():
+        if kind == UNSEEN:
+            name = component(system, int(number), UNSEEN)
+            what = f"the torque of {name} jumps with the sign of its slip at {time:.9g} s, where no event is"
+            yield time, f"{what}; take a law that sticks, such as Stribeck, for derivatives"
 
 
 def component(system: System, number: int, kind: int) -> str:

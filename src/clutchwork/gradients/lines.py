@@ -48,6 +48,11 @@ class Line(NamedTuple):
     rough: bool = False  # whether a run of a tighter tolerance knows its derivatives better
     missed: float = 0.0  # the most that is not known of one of them, of the value
 
+    def without_derivatives(self, why: str) -> Line:
+        """The same where it has none by the numbers that move it."""
+        nothing = np.where((self.left == 0.0) & (self.right == 0.0), 0.0, np.nan)
+        return self._replace(left=nothing, right=nothing, none=why, several="", rough=False)
+
 
 def lines(run: Run, outputs: Mapping[str, Output], labels: Sequence[str], asked: Context, sizes: Array) -> list[Line]:
     """All that is asked for, in order; of signals at instants all rows at once where a run carries derivatives along.

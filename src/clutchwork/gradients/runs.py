@@ -75,11 +75,12 @@ class Runs:
     """Runs of a driveline with other numbers."""
 
     task: GradientTask
+    known_words: Words | None = None
 
     @cached_property
     def words(self) -> Words:
         """The words of the driveline as functions of the numbers."""
-        return Words(self.task.system, tuple(self.task.parameters))
+        return self.known_words or Words(self.task.system, tuple(self.task.parameters))
 
     @cached_property
     def wanted(self) -> CoreOutputs:

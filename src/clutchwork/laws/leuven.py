@@ -41,6 +41,15 @@ class Leuven(StribeckCurve):
     )
     damping: float = param("s/rad", "coefficient per rate of the deflection", default=0.0, at_least=0.0, units=("s/m",))
 
+    @property
+    def steep(self) -> str:
+        """With an order below 1 the rate of the deflection is as steep as you like next to zero."""
+        return (
+            f"order = {self.order:g} is below 1, so its rate has no derivative at no deflection"
+            if self.order < 1
+            else ""
+        )
+
     def own_states(self) -> tuple[State, ...]:
         """One state for each element."""
         return self.states[: len(self.elements)]

@@ -135,18 +135,17 @@ void solve_lu(int n, const T* a, const int* pivot, T* b) {
 }
 
 /// Of the rows order[rank..m) the one with the largest part outside the span so far, relative to its length (-1: none
-/// has any).
+/// has any); the first of those of which more than `enough` is outside.
 template <class T>
-int most_independent(int m, int n, const T* rows, const int* order, const T* norms, int rank) {
+int most_independent(int m, int n, const T* rows, const int* order, const T* norms, int rank, T enough) {
   int best = -1;
   T best_share = T(1e-10);
   for (int r = rank; r < m; ++r) {
     const T* x = rows + order[r] * n + rank;
     const T length = sqrt(dot(n - rank, x, x));
-    if (norms[order[r]] > T(0) && length / norms[order[r]] > best_share) {
-      best = r;
-      best_share = length / norms[order[r]];
-    }
+    const T share = norms[order[r]] > T(0) ? smaller(length / norms[order[r]], enough) : T(0);
+    const bool is_first = best >= 0 && share == enough && share == best_share && order[r] < order[best];
+    if (share > best_share || is_first) best = r, best_share = share;
   }
   return best;
 }
@@ -169,9 +168,10 @@ void reflect(int m, int n, T* rows, T* q, T* u, int rank) {
 
 /// Orthonormal basis of R^n whose first `rank` columns span the given rows, by pivoted Householder reflections.
 /// rows: m x n, overwritten. q: n x n, its column j is q[i * n + j]. order: m, pivot order; rows from `spanning` on are
-/// turned with the others and never pivots (-1: none). Returns the rank.
+/// turned with the others and never pivots (-1: none). Of rows of which more than `enough` is independent the first
+/// ones pivot. Returns the rank.
 template <class T>
-int orthonormal_split(int m, int n, T* rows, T* q, int* order, T* norms, int spanning = -1) {
+int orthonormal_split(int m, int n, T* rows, T* q, int* order, T* norms, int spanning = -1, T enough = T(2)) {
   const int pivots = spanning < 0 ? m : spanning;
   for (int i = 0; i < n * n; ++i) q[i] = T(0);
   for (int i = 0; i < n; ++i) q[i * n + i] = T(1);
@@ -181,7 +181,7 @@ int orthonormal_split(int m, int n, T* rows, T* q, int* order, T* norms, int spa
   }
   int rank = 0;
   for (; rank < pivots && rank < n; ++rank) {
-    const int best = most_independent(pivots, n, rows, order, norms, rank);
+    const int best = most_independent(pivots, n, rows, order, norms, rank, enough);
     if (best < 0) break;
     const int swap = order[rank];
     order[rank] = order[best];

@@ -18,14 +18,16 @@ struct Least {
 
   explicit Least(int& whose) : who(whose), rests(whose == resting) {}
   void watch(const S& guard, int number) {
-    bool moves = false;
+    // round-off of a guard, and of what it does in a second, where that is asked for
+    const double still = rests ? 1e-12 : 0.0, slow = 1e3 * still;
+    bool moves = abs(value(guard)) > still;
     if constexpr (requires { guard.d; }) {
       for (auto i = 0u; i < sizeof(guard.d) / sizeof(guard.d[0]); ++i) {
         change.d[i] += abs(guard.d[i]);
-        moves = moves || value(guard.d[i]) != 0;
+        moves = moves || abs(value(guard.d[i])) > slow;
       }
     }
-    if ((value(guard) == 0 && !moves) != rests) return;
+    if (moves == rests) return;
     if (value(guard) < value(least)) least = plain_of(guard), who = number;
   }
   S margin() const { return least + change; }

@@ -58,6 +58,15 @@ CLUTCHWORK_HOT bool none(bool x) { return !x; }
 CLUTCHWORK_HOT bool is_zero(double x) { return x == 0; }
 CLUTCHWORK_HOT bool is_zero(float x) { return x == 0; }
 
+/// Whether two numbers differ, or move apart with what they are made of.
+template <class T>
+CLUTCHWORK_HOT bool differ(const T& a, const T& b) {
+  if constexpr (has_tangents<T>) {
+    if (largest_difference(a, b) > 0) return true;
+  }
+  return value(a - b) != 0;
+}
+
 /// Whether a number counts: it is not zero, or what it is made of moves it.
 template <class T>
 CLUTCHWORK_HOT bool counts(const T& x) {

@@ -252,7 +252,7 @@ void prescribed_jump(Workspace<T>& ws) {
   for (int i = 0; i < nv; ++i) x[i] = T(0);
   for (int p = 0; p < np; ++p) {
     const T jump = ws.in.prescribed[p] - ws.in.prescribed_before[p];
-    if (value(jump) == 0) continue;
+    if (!differ(ws.in.prescribed[p], ws.in.prescribed_before[p])) continue;
     any = true;
     axpy(nv, -jump, ws.geometry.prescribed_momentum + p * nv, x);
   }

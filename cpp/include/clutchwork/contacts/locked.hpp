@@ -155,16 +155,17 @@ double driven_share(const Workspace<T>& ws, int s, int p) {
   return abs(value(share)) > 1e-12 * size ? value(share) : 0.0;
 }
 
-/// The directions of the n contacts in held.all, split; returns their rank. For few speeds.
+/// The directions of the n contacts in held.all, split; returns their rank. `enough`: of those that are so independent
+/// the first ones are. For few speeds.
 template <class T>
-int split_held(Workspace<T>& ws, int n) {
+int split_held(Workspace<T>& ws, int n, double enough = 2.0) {
   const int nv = int(ws.sys.speeds), ne = int(ws.sys.elements);
   Held<T>& h = ws.held;
   for (int a = 0; a < n; ++a) {
     for (int i = 0; i < nv; ++i) h.rows[a * nv + i] = T(0);
     ws.geometry.mass_weighted.add(ne + h.all[a], T(1), h.rows + a * nv);
   }
-  return orthonormal_split(n, nv, h.rows, h.basis, h.order, h.norms);
+  return orthonormal_split(n, nv, h.rows, h.basis, h.order, h.norms, -1, T(enough));
 }
 
 /// Of the n locked contacts in held.all the independent ones, whose held.number is not -1, and
@@ -270,12 +271,13 @@ void list_driven(Workspace<T>& ws) {
   }
 }
 
-/// Contacts that hold more come first: what slips and follows a load moves with the torques of the independent
-/// contacts, the first of a set. docs/theory/load-dependent.md, rule 3
+/// Contacts that hold more come first, each the way in which it holds most: what slips and follows a load moves with the
+/// torques of the independent contacts, the first of a set. docs/theory/load-dependent.md, rule 3
 template <class T>
 [[gnu::noinline]] void sort_by_strength(const Workspace<T>& ws, int* contact, int n) {
   auto strength = [&](int c) {
-    return smaller(value(capacity_of(ws, c, forward)), value(capacity_of(ws, c, backward)));
+    const double one_way = free_way(ws, c) > 0 ? value(freewheel_limit(ws, c)) : free_way(ws, c) < 0 ? infinity : 0.0;
+    return larger(one_way, larger(value(capacity_of(ws, c, forward)), value(capacity_of(ws, c, backward))));
   };
   for (int a = 1; a < n; ++a) {
     const int c = contact[a];
@@ -307,7 +309,7 @@ void list_locked(Workspace<T>& ws) {
   h.too_many = h.vanished = false;
   if (ws.ratios.n == 0 && (!ws.geometry.redundant || n < 2)) return;
   if (is_few(ws.sys)) {
-    const int rank = h.rank = split_held(ws, n);
+    const int rank = h.rank = apart ? split_held(ws, n, 1e-3) : split_held(ws, n);
     for (int a = 0; a < n; ++a) h.number[a] = -1;
     for (int j = 0; j < rank; ++j) h.number[h.order[j]] = 0;
     ws.ratios.n > 0 ? list_independent_beside(ws, n) : list_independent(ws, n);

@@ -182,7 +182,7 @@ void note_borders_of(Form& form, Step<Form>& step, int place, int who = turned) 
       Hit hit;
       hit.what = place, hit.index = index, hit.who = who, ws.in.time = -infinity;
       const T margin = border<G>(form, step, hit, ws.time + later);
-      if (abs(value(margin)) > (who == resting ? 0.0 : near * G::scale(form, hit, step.y0()))) return;
+      if (abs(value(margin)) > (who == resting ? 1e-12 : near * G::scale(form, hit, step.y0()))) return;
       note_border(ws, place, G::component(ws, hit), margin);
       if (looks[1] == 0) return;
     }
@@ -204,8 +204,8 @@ void note_borders(Form& form, Step<Form>& step, Borders which) {
     using G = typename decltype(tag)::type;
     constexpr bool flips = std::is_same_v<G, LineFlip>;
     constexpr bool holds = std::is_same_v<G, TorqueLimit> || std::is_same_v<G, SetLimit>;
-    if constexpr (std::is_same_v<G, PieceEnd>) note_borders_of<G>(form, step, place, resting);
     if constexpr (requires { G::each_border(form.ws, [](int) {}); }) {
+      if constexpr (G::effect != Effect::decides) note_borders_of<G>(form, step, place, resting);
       if (which == Borders::all || holds || (flips && which == Borders::carried)) note_borders_of<G>(form, step, place);
     }
   });

@@ -62,7 +62,7 @@ bool knot_decides(Workspace<T>& ws) {
   if (settle_pieces(ws)) list_lines(ws);
   bool decide = refresh_loads(ws) || ratios_jump(ws);
   for (int p = 0; p < ws.sys.prescribed; ++p)
-    decide = decide || value(ws.in.prescribed[p] - ws.in.prescribed_before[p]) != 0;
+    decide = decide || differ(ws.in.prescribed[p], ws.in.prescribed_before[p]);
   return decide;
 }
 
@@ -126,6 +126,15 @@ bool pass_process(Form& form, Step<Form>& step, int c, int who, bool& moved) {
   return !process_crowds(ws, c);
 }
 
+/// Note that a slip has passed zero with which a torque jumps, where no event is: derivatives do not know of it.
+template <class T>
+void note_passed(Workspace<T>& ws, int component) {
+  Moved<T>& m = ws.moved;
+  if (m.n == Moved<T>::room) return;
+  m.instant[m.n] = T(0);
+  m.graze[m.n++] = {ws.time, double(passed_unseen), double(component), infinity, 0};
+}
+
 /// Whether a contact whose torque jumps with the sign of its slip reverses again and again within a few steps: it
 /// cannot come to rest. docs/theory/events.md, rule 14
 template <class T>
@@ -139,6 +148,10 @@ bool chatters(Workspace<T>& ws) {
     int& heading = ws.heading[ws.branch[k].direction];
     if (rate * heading >= 0) continue;
     heading = -heading;
+    // the step before is behind the start of the next one
+    if constexpr (has_tangents<T>) {
+      if (rate * value(ws.step_end.rate[k]) < 0) note_passed(ws, ws.branch[k].direction);
+    }
     // a slip that was driven through zero goes on; one that chatters is pushed back
     if (rate * value(ws.step_start.slope[k]) >= 0) continue;
     ws.detail.component = ws.branch[k].direction;

@@ -13,7 +13,7 @@ struct Workspace;
 /// A guard that was hit: how fast it passed zero, over its own size. docs/theory/gradients.md (6)
 struct Graze {
   double time;       ///< [s]
-  double what;       ///< Hit::What, -1: knots of signals
+  double what;       ///< Hit::What, -1: knots of signals, or `passed_unseen`
   double component;  ///< elements, then contacts; -1: none
   double index;      ///< [1/s] size of its time derivative over its scale
   double together;   ///< [s] largest difference of the derivatives of two events at this instant, 0: there are none;
@@ -21,6 +21,8 @@ struct Graze {
 };
 
 inline constexpr int graze_size = 5;
+/// What of a graze: a jump of a torque that no guard sees.
+inline constexpr int passed_unseen = 1000;
 
 /// Rows of derivatives along a step: the stages come first, then these.
 struct SlopeRow {

@@ -141,7 +141,7 @@ struct PieceEnd : OwnScale {
 
 /// Where the capacity of a locked contact bends, for its law is a table over what changes while it holds: up to there
 /// the end of the step says nothing of what it holds. docs/theory/events.md, rule 12
-struct CapacityBend : OwnScale, OfNone {
+struct CapacityBend : OwnScale {
   static constexpr const char* name = "bend";
   static constexpr Effect effect = Effect::other;
 
@@ -166,6 +166,24 @@ struct CapacityBend : OwnScale, OfNone {
       const double s = piece_end(form, step, make_branch(ws, int(ws.sys.elements) + c, forward), -1, hit, who);
       if (hit.take(s, c, who)) hit.held_bends = true;
     }
+  }
+  template <class T, class F>
+  static void each_border(const Workspace<T>& ws, F&& f) {
+    for (int i = 0; i < ws.guard.n_bending; ++i) f(ws.guard.bending[i]);
+  }
+  /// Of one that rests at a point of its table.
+  template <class Form, class T = typename Form::Scalar>
+  static T border(Form& form, Step<Form>& step, Hit& hit, double t, const T* y) {
+    if (hit.who != resting) return T(1);
+    auto& ws = form.ws;
+    const T still[most_ways] = {};
+    inputs_of(form, t, y);
+    const Branch<T> b = make_branch(ws, int(ws.sys.elements) + hit.index, forward);
+    return law_margin(ws, b, still, still, y + form.nz(), step.f0() + form.nz(), hit.who).v;
+  }
+  template <class T>
+  static int component(const Workspace<T>& ws, const Hit& hit) {
+    return int(ws.sys.elements) + hit.index;
   }
   /// No motion depends on it: it has no derivatives.
   template <class Form, class T = typename Form::Scalar>

@@ -109,14 +109,16 @@ struct TorqueLimit {
   static bool watches(const Workspace<T>& ws) {
     return ws.held.n > 0;
   }
-  /// Call f for each contact that holds one way alone, as a closed stop does, and next to nothing.
+  /// Call f for each contact that holds one way alone, as a closed stop does, and next to nothing, or all that it can.
   template <class T, class F>
   static void each_border(const Workspace<T>& ws, F&& f) {
     const double little = 1e-6 * torque_size(*ws.moved.plain);
     for (int a = 0; a < ws.held.n; ++a) {
       const int c = ws.held.contact[a];
-      if (free_way(ws, c) == 0 || abs(value(ws.step_start.multiplier[a])) > little) continue;
-      if (ws.held.in_set[a] == 0 && !is_rigid(ws, c)) f(a);
+      if (ws.held.in_set[a] != 0 || is_rigid(ws, c)) continue;
+      const T torque = ws.step_start.multiplier[a];
+      const double size = abs(value(torque)), left = abs(value(distance_from_slip(ws, c, torque)));
+      if (free_way(ws, c) != 0 ? size <= little : left <= 1e-9 * size) f(a);
     }
   }
   /// Skipped while the margin exceeds what can change in the step.

@@ -1,0 +1,47 @@
+"""Laws whose torque jumps where no event is, or whose rates have no derivative at some states."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+import clutchwork as cw
+
+CURVE = {"static": 0.1, "kinetic": 0.08, "speed": 2.0}
+
+
+def driven(law: cw.Law) -> cw.Driveline:
+    """A disc that a torque drives from behind a turning brake disc to ahead of it: the slip passes zero at 0.2 s."""
+    d = cw.Driveline("driven")
+    s, other = d.shaft("s", inertia=0.1), d.shaft("other", inertia=1.0)
+    d.add(cw.PrescribedSpeed("m", shaft=other, speed=10.0))
+    d.add(cw.Torque("t", shaft=s, torque=5.0))
+    d.add(cw.Clutch("c", base=other, follower=s, friction=law, gain=1e-3, pressure=1e4))
+    return d
+
+
+def test_a_torque_that_jumps_without_an_event_has_no_derivative_behind_it() -> None:
+    function = cw.differentiable(
+        driven(cw.NaiveSign(**CURVE)), 0.5, of=[cw.at("s.speed", 0.05), "s.speed"], by="t.torque"
+    )
+    gradient = function.gradient()
+    before, behind = gradient.matrix[:, 0]
+    step = 1e-4
+    expected = (function(function.x0 + step) - function(function.x0 - step)) / (2.0 * step)
+    assert before == pytest.approx(expected[0], rel=1e-6)
+    assert np.isnan(behind)
+    assert "jumps with the sign of its slip" in gradient.problems[0]
+    with pytest.raises(cw.ClutchworkError, match="where no event is"):
+        function.vjp(function.x0, np.array([0.0, 1.0]))
+
+
+def test_the_same_law_has_derivatives_where_its_slip_keeps_its_sign() -> None:
+    function = cw.differentiable(driven(cw.NaiveSign(**CURVE)), 0.1, of="s.speed", by="t.torque")
+    assert function.gradient().matrix[0, 0] == pytest.approx(0.1 / 0.1, rel=0.05)
+
+
+@pytest.mark.parametrize(("order", "is_noted"), [(0.4, True), (1.0, False), (20.0, False)])
+def test_bristles_as_steep_as_one_likes_are_noted(order: float, is_noted: bool) -> None:  # noqa: FBT001
+    law = cw.Leuven(**CURVE, elements=((2e-5, 0.4), (1e-4, 0.6)), order=order)
+    gradient = cw.differentiable(driven(law), 0.1, of="s.speed", by="t.torque").gradient()
+    assert any("is below 1" in note for note in gradient.notes) == is_noted
