@@ -105,6 +105,33 @@ def test_all_mistakes_are_named_at_once() -> None:
     assert "sort the samples by time" in text
 
 
+def test_a_wrong_record_hides_no_wrong_name() -> None:
+    poor = replace(ONE, measured={"load.spede": two.TIMES}, start={"load.inertia": 1.0})
+    free = ["c1.gian", "c1.locked", "engine.inertia", "load.inertia"]
+    bounds = {"engine.inertia": (2.0, 1.0), "c1.gian": (1e-4, 1e-3), "c1.gain": (1e-4, 1e-3)}
+    with pytest.raises(FitError) as caught:
+        fit_records(two.discs(), poor, free, bounds=bounds, starts=0, loss="hubre")
+    for part in (
+        "starts is 0",
+        "did you mean 'huber'",
+        "load.inertia is free, and record 1 sets it",
+        "measured has no signal 'load.spede'",
+        "free has no 'c1.gian'; did you mean 'c1.gain'",
+        "c1.locked is a choice",
+        "bounds of engine.inertia are swapped",
+        "bounds are given for 'c1.gain', which is not free",
+    ):
+        assert part in str(caught.value)
+    assert len(caught.value.problems) == 8
+
+
+def test_a_wrong_name_hides_no_wrong_bound() -> None:
+    with pytest.raises(FitError) as caught:
+        fit_records(two.discs(), ONE, ["c1.gian", "load.inertia"], bounds={"load.inertia": (2.0, 1.0)})
+    assert len(caught.value.problems) == 2
+    assert "bounds of load.inertia are swapped" in str(caught.value)
+
+
 def test_a_run_that_ends_early_is_refused() -> None:
     d = cw.Driveline("speed that grows without bound")
     fan = d.shaft("fan", inertia=1.0, speed=1.0)

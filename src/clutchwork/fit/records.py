@@ -19,7 +19,7 @@ from clutchwork.fit.fitted_record import FittedRecord
 from clutchwork.fit.intervals import estimate
 from clutchwork.fit.losses import WIDTH, Penalty
 from clutchwork.fit.misfit import is_worse, patterns
-from clutchwork.fit.numbers import Numbers, numbers
+from clutchwork.fit.numbers import Numbers, faults, numbers
 from clutchwork.fit.record import Record
 from clutchwork.fit.record_readings import Readings
 from clutchwork.fit.response_result import ResponseFit
@@ -65,17 +65,29 @@ def fit_records(
     listed = [records] if isinstance(records, Record) else list(records)
     names, owned = _names(free), _names(own)
     problems = list(_faults(listed, names, owned, confidence, starts))
-    refuse(problems)
+    penalty = _penalty(loss, loss_width, problems)
     system = model if isinstance(model, System) else model.assemble()
-    found = driven(system, listed, problems)
+    found = driven(system, [one for one in listed if isinstance(one, Record)], problems)
+    if problems:
+        said = {one.quantity for one in problems}
+        problems += faults(system, [name for name in dict.fromkeys([*names, *owned]) if name not in said], bounds or {})
     refuse(problems)
-    descent = Descent(found, numbers(found, names, owned, bounds or {}), Penalty(loss, loss_width))
+    descent = Descent(found, numbers(found, names, owned, bounds or {}), penalty)
     return _solved(descent, Readings(system, listed, descent), confidence, starts)
 
 
 def _names(given: Sequence[str] | str) -> list[str]:
     """One or several, each once."""
     return [given] if isinstance(given, str) else list(dict.fromkeys(given))
+
+
+def _penalty(kind: str, width: float, problems: list[FitError]) -> Penalty:
+    """The loss that is asked for, or least squares where something is wrong with it."""
+    try:
+        return Penalty(kind, width)
+    except FitError as error:
+        problems.append(error)
+        return Penalty()
 
 
 def _faults(records: list[Any], free: list[Any], own: list[Any], confidence: float, starts: int) -> Iterator[FitError]:
