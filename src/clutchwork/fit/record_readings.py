@@ -50,7 +50,7 @@ class Reading(NamedTuple):
 
 
 @dataclass(frozen=True, eq=False)
-class Trial:
+class ReadingTrial:
     """A reading with the runs of the start values."""
 
     words: str
@@ -59,7 +59,7 @@ class Trial:
 
 
 @dataclass(frozen=True, eq=False)
-class Readings:
+class RecordReadings:
     """Other readings of the records of a fit.
 
     Parameters: given, the records as they are read, in the order of those of `descent`.
@@ -91,12 +91,12 @@ class Readings:
             if one.left < FAIR
         ]
 
-    def near(self) -> list[Trial]:
+    def near(self) -> list[ReadingTrial]:
         """Readings that the runs of the start values are much closer to, the nearest first."""
         now = _left(self.descent, _runs(self.descent))
         return sorted((one for one in self._trials() if one.left < FITS * now), key=lambda one: one.left)
 
-    def _trials(self) -> Iterator[Trial]:
+    def _trials(self) -> Iterator[ReadingTrial]:
         """All readings, those with other runs also with other units of all measured signals."""
         here, measured, inputs = Reading("", self.given), self._measured(), self._inputs()
         as_given = [*self._in_units(here, self._units(measured, alone=True)), *self._swapped()]
@@ -105,7 +105,7 @@ class Readings:
             both = self._in_units(other, self._units(measured, alone=False))
             yield from self._of_one_run([other, *both], None)
 
-    def _of_one_run(self, readings: Sequence[Reading], runs: list[Array] | None) -> Iterator[Trial]:
+    def _of_one_run(self, readings: Sequence[Reading], runs: list[Array] | None) -> Iterator[ReadingTrial]:
         """Readings that have the same runs; None: those of the first one."""
         for one in readings:
             problems = list[FitError]()
@@ -117,7 +117,7 @@ class Readings:
                 runs = _runs(descent) if runs is None else runs
             except ModelError:
                 return
-            yield Trial(one.words, records, _left(descent, runs))
+            yield ReadingTrial(one.words, records, _left(descent, runs))
 
     def _measured(self) -> dict[str, str]:
         """Units of SI of the measured signals."""

@@ -21,7 +21,7 @@ from clutchwork.fit.losses import WIDTH, Penalty
 from clutchwork.fit.misfit import is_worse, patterns
 from clutchwork.fit.numbers import Numbers, faults, numbers
 from clutchwork.fit.record import Record
-from clutchwork.fit.record_readings import Readings
+from clutchwork.fit.record_readings import RecordReadings
 from clutchwork.fit.response_result import ResponseFit
 from clutchwork.fit.traces import label
 from clutchwork.fit.unknown import Pair
@@ -73,7 +73,7 @@ def fit_records(
         problems += faults(system, [name for name in dict.fromkeys([*names, *owned]) if name not in said], bounds or {})
     refuse(problems)
     descent = Descent(found, numbers(found, names, owned, bounds or {}), penalty)
-    return _solved(descent, Readings(system, listed, descent), confidence, starts)
+    return _solved(descent, RecordReadings(system, listed, descent), confidence, starts)
 
 
 def _names(given: Sequence[str] | str) -> list[str]:
@@ -118,7 +118,7 @@ def _taken(record: Record, of: str, free: Sequence[str], own: Sequence[str]) -> 
             yield FitError(name, f"is free, and {of} sets it", remedy)
 
 
-def _solved(descent: Descent, readings: Readings, confidence: float, starts: int) -> ResponseFit:
+def _solved(descent: Descent, readings: RecordReadings, confidence: float, starts: int) -> ResponseFit:
     records, searched, ended = descent.records, descent.numbers, descent.best(starts)
     best = ended[0]
     what = estimate(descent, best.u, confidence)
