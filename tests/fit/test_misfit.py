@@ -282,6 +282,7 @@ BOTH = "engine.speed and car.speed are in {0} and were taken as rad/s: give unit
             "c1.pressure is in bar and was taken as Pa: give units={'c1.pressure': 'bar'}, and engine.speed and car",
         ),
     ],
+    ids=["bar", "kPa", "1/min", "deg/s", "one in 1/min", "swapped", "wrong units", "ms", "bar and 1/min"],
 )
 def test_only_the_reading_that_is_meant_is_named(given: dict[str, Any], said: str) -> None:
     """A speed in another unit is small beside a car that stands still, which is no reason to name that unit."""
