@@ -64,6 +64,28 @@ def test_all_mistakes_are_named_at_once():
     assert [word for word in ("c1.gain", "minimise", "subject_to", "tolerance", "starts") if word not in said] == []
 
 
+def test_a_wrong_name_hides_no_wrong_output():
+    said = refused(free={"c1.gian": (0, 1)}, minimise="c1.haet", subject_to=[cw.limit("c1.torqe", upper=1.0)])
+    for word in ("'c1.gain'", "'c1.heat'", "'c1.torque'"):
+        assert f"did you mean {word}?" in said
+    both = refused(solver="ipopt", minimise={"c1.haet": 1.0, "c1.wrk": 1.0})
+    for word in ("SLSQP is the only solver", "did you mean 'c1.heat'?", "did you mean 'c1.work'?"):
+        assert word in both
+
+
+def test_worst_without_scatter_is_refused():
+    said = refused(robust="worst")
+    assert "robust is 'worst', and nothing scatters: give scatter={" in said
+    assert "or leave robust out" in said
+
+
+def test_a_misspelt_argument_is_named():
+    """Options are free names, which hid it."""
+    with pytest.raises(cw.UseError) as caught:
+        cw.calibrate(discs(), 5.0, free={"c1.gain": (3e-4, 9e-4)}, minimize="c1.heat", rtol=1e-6)
+    assert caught.value.problems == ("unknown field 'minimize'; did you mean 'minimise'?",)
+
+
 def test_bounds_that_the_model_refuses_are_named_before_the_search():
     with pytest.raises(cw.ModelError, match=r"c1.*gain.*must be > 0"):
         cw.calibrate(discs(), 5.0, free={"c1.gain": (-1.0, 1.0)}, minimise="c1.heat")

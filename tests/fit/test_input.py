@@ -68,6 +68,7 @@ def test_samples(data: dict[str, Any], words: str) -> None:
         ({"free": ["shape"]}, "which is not a fittable parameter of Stribeck"),
         ({"bounds": {"speeds": (0.0, 1.0)}}, "did you mean 'speed'"),
         ({"bounds": {"speed": (3.0, 4.0)}}, "start within the bounds"),
+        ({"bounds": {"speed": (4.0, 3.0)}}, r"bounds of speed are swapped: \(4, 3\); give \(3, 4\)"),
         ({"rest": -1.0}, "rest is -1"),
         ({"rest": 100.0}, "lower `rest`"),
         ({"confidence": 95.0}, "confidence is 95"),

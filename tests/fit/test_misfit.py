@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+import re
+from dataclasses import replace
+from functools import cache
 from typing import Any
 
 import numpy as np
@@ -11,6 +14,7 @@ import clutchwork as cw
 from clutchwork.fit import FitError, Record, fit_law, fit_records
 from clutchwork.fit.misfit import pattern
 from clutchwork.fit.sliding import coefficients
+from clutchwork.fit.words import share
 from support import measured_discs as two
 
 LOAD = 500.0
@@ -126,6 +130,55 @@ def test_time_and_slip_that_are_swapped_are_named() -> None:
         fit_law(start, **turned)
 
 
+@pytest.mark.parametrize(("unit", "factor"), [("1/min", 30.0 / np.pi), ("deg/s", 180.0 / np.pi)])
+def test_the_unit_of_the_slip_that_is_meant_is_named(unit: str, factor: float) -> None:
+    """Slip in deg/s fits better as 1/min than as rad/s, and best as what it is."""
+    start, data, _ = drawn(0, 1e-3)
+    data["slip"] = data["slip"] * factor
+    known = replace(LAWS[0][0], kinetic=0.08)
+    found = told_of(known, data, ["kinetic"])
+    assert f"likely the slip is in {unit} and was taken as rad/s: with that r2 is 1" in found
+    assert found.count("likely ") == 1
+    noted = fit_law(start, **data, free=["static", "kinetic", "speed"]).notes
+    assert f"as if the slip were in {unit}: " in noted
+
+
+def test_a_torque_or_a_slip_that_lost_its_sign_is_named() -> None:
+    start, data, free = drawn(0, 1e-3)
+    for one, other in (("torque", "slip"), ("slip", "torque")):
+        found = told_of(start, data | {one: np.abs(data[one])}, free)
+        assert f"multiply the {one} by the sign of the {other}: with that r2 is 1" in found
+
+
+def test_coefficients_that_are_thousand_times_off_are_noted() -> None:
+    start, data, free = drawn(0, 1e-3)
+    assert "usually" not in fit_law(start, **data, free=free).notes
+    small = fit_law(start, **data | {"torque": data["torque"] / 1000.0}, free=free)
+    assert "and coefficients of friction are usually 0.02 to 1: likely the torque is in kN m" in small.notes
+    large = fit_law(start, **data | {"load": data["load"] / 1000.0}, free=["static", "kinetic"])
+    assert "likely the load is in kN m: multiply it by 1000" in large.notes
+    # a load of 1 makes coefficients torques, and start values say so
+    torques = cw.Stribeck(static=65.0, kinetic=50.0, speed=3.0, viscous=0.5)
+    assert "usually" not in fit_law(torques, **data | {"load": 1.0}, free=["static", "kinetic"]).notes
+
+
+@pytest.mark.parametrize(
+    ("value", "words"),
+    [(0.021, "2.1 % of"), (0.82, "82 % of"), (1.5, "150 % of"), (2.8, "2.8 times"), (5234.0, "5200 times")],
+)
+def test_shares_can_be_read_aloud(value: float, words: str) -> None:
+    assert share(value) == words
+
+
+def test_messages_have_no_powers_of_ten() -> None:
+    rng = np.random.default_rng(0)
+    record = Record(LAUNCH_TIMES, {name: rng.normal(size=126) for name in speeds_of_launch()})
+    with pytest.raises(FitError) as caught:
+        fit_records(launch(), record, ["car.inertia"])
+    assert "times the samples" in str(caught.value)
+    assert not re.search(r"\de\+", str(caught.value))
+
+
 def told_of(start: Any, data: dict[str, Any], free: list[str]) -> str:
     """What a fit says, as error or as message."""
     try:
@@ -151,7 +204,7 @@ def test_speeds_that_are_nine_times_their_start_values_are_noted() -> None:
 def test_speeds_of_a_record_in_turns_or_swapped_are_named(seed: int) -> None:
     record = two.record(noise=0.3, seed=seed)
     turned = Record(two.TIMES, {name: values * 30.0 / np.pi for name, values in record.measured.items()})
-    with pytest.raises(FitError, match=r"likely engine\.speed is in 1/min") as caught:
+    with pytest.raises(FitError, match=r"likely engine\.speed and load\.speed are in 1/min") as caught:
         fit_records(two.guess(), turned, ["c1.friction.kinetic"])
     assert caught.value.result.r2 < 0.0
     engine, load = (record.measured[name] for name in two.SPEEDS)
@@ -164,6 +217,123 @@ def test_speeds_of_a_record_in_turns_or_swapped_are_named(seed: int) -> None:
         assert not found.determined
         told = found.message
     assert "likely engine.speed and load.speed are swapped" in told
+
+
+LAUNCH_TIMES = np.linspace(0.0, 2.5, 126)
+LAUNCH_PRESSURE = 1e5 * np.interp(LAUNCH_TIMES, [0.0, 0.3], [0.0, 3.0])
+FREE_OF_LAUNCH = {"car.inertia": 1.3, "c1.friction.kinetic": 0.08, "c1.friction.static": 0.18}
+
+
+def launch(pressure: Any = 0.0) -> cw.Driveline:
+    """That of docs/guide/fit.md: without a pressure the car stands still."""
+    d = cw.Driveline("launch")
+    engine = d.shaft("engine", inertia=0.25, speed=150.0)
+    car = d.shaft("car", inertia=1.0, speed=0.0)
+    lining = cw.Coulomb(static=0.13, kinetic=0.11)
+    d.add(cw.Clutch("c1", base=engine, follower=car, friction=lining, gain=1e-3, pressure=pressure))
+    d.add(cw.Torque("push", shaft=engine, torque=cw.Table([(0.0, 0.0), (1.6, 0.0), (2.0, 90.0)])))
+    return d
+
+
+@cache
+def speeds_of_launch() -> dict[str, Any]:
+    applied = cw.Table(list(zip(LAUNCH_TIMES.tolist(), LAUNCH_PRESSURE.tolist(), strict=True)))
+    run = launch(applied).simulate(2.5, times=LAUNCH_TIMES)
+    rng = np.random.default_rng(5)
+    return {name: run[name] + rng.normal(0.0, 0.3, len(LAUNCH_TIMES)) for name in ("engine.speed", "car.speed")}
+
+
+def misread_launch(
+    factors: tuple[float, float] = (1.0, 1.0),
+    pressure: Any = LAUNCH_PRESSURE,
+    swapped: bool = False,
+    time: Any = LAUNCH_TIMES,
+    **given: Any,
+) -> str:
+    """What the fit of a launch says whose record is misread."""
+    engine, car = (factor * row for factor, row in zip(factors, speeds_of_launch().values(), strict=True))
+    rows = {"engine.speed": car, "car.speed": engine} if swapped else {"engine.speed": engine, "car.speed": car}
+    model = launch().assemble().changed(FREE_OF_LAUNCH)
+    try:
+        found = fit_records(model, Record(time, rows, inputs={"c1.pressure": pressure}, **given), list(FREE_OF_LAUNCH))
+    except FitError as error:
+        return str(error)
+    assert not found.determined
+    return found.message
+
+
+TURN, DEGREE = 30.0 / np.pi, 180.0 / np.pi
+BOTH = "engine.speed and car.speed are in {0} and were taken as rad/s: give units={{'engine.speed': '{0}', 'car.speed'"
+
+
+@pytest.mark.parametrize(
+    ("given", "said"),
+    [
+        ({"pressure": LAUNCH_PRESSURE / 1e5}, "c1.pressure is in bar and was taken as Pa: give units={'c1.pressure'"),
+        ({"pressure": LAUNCH_PRESSURE / 1e3}, "c1.pressure is in kPa and was taken as Pa"),
+        ({"factors": (TURN, TURN)}, BOTH.format("1/min")),
+        ({"factors": (DEGREE, DEGREE)}, BOTH.format("deg/s")),
+        ({"factors": (TURN, 1.0)}, "engine.speed is in 1/min and was taken as rad/s: give units={'engine.speed'"),
+        ({"swapped": True}, "engine.speed and car.speed are swapped"),
+        ({"units": {"car.speed": "1/min"}}, "car.speed is in rad/s and was taken as 1/min"),
+        ({"time": 1000.0 * LAUNCH_TIMES}, "time is in ms and was taken as s"),
+        (
+            {"factors": (TURN, TURN), "pressure": LAUNCH_PRESSURE / 1e5},
+            "c1.pressure is in bar and was taken as Pa: give units={'c1.pressure': 'bar'}, and engine.speed and car",
+        ),
+    ],
+    ids=["bar", "kPa", "1/min", "deg/s", "one in 1/min", "swapped", "wrong units", "ms", "bar and 1/min"],
+)
+def test_only_the_reading_that_is_meant_is_named(given: dict[str, Any], said: str) -> None:
+    """A speed in another unit is small beside a car that stands still, which is no reason to name that unit."""
+    found = misread_launch(**given)
+    assert found.count("likely ") == 1
+    assert f"likely {said}" in found
+    assert re.search(r"with that r2 is (1|0\.99\d)\b", found)
+
+
+def test_a_unit_that_was_given_is_not_advised_again() -> None:
+    """Pressure in bar is the cause, whatever the advice that was followed before."""
+    found = misread_launch(pressure=LAUNCH_PRESSURE / 1e5, units={"engine.speed": "1/min", "car.speed": "1/min"})
+    assert "likely c1.pressure is in bar" in found
+    assert "give units={'car.speed': '1/min'}" not in found
+
+
+def test_rows_without_meaning_have_no_reading() -> None:
+    rng = np.random.default_rng(3)
+    record = Record(LAUNCH_TIMES, {name: rng.normal(size=126) for name in speeds_of_launch()})
+    with pytest.raises(FitError) as caught:
+        fit_records(launch(), record, ["car.inertia"])
+    assert "likely" not in str(caught.value)
+
+
+def test_a_constant_input_has_its_unit() -> None:
+    record = Record(LAUNCH_TIMES, launch_of("3 bar"), inputs={"c1.pressure": 3.0}, units={"c1.pressure": "bar"})
+    found = fit_records(launch(), record, ["car.inertia"])
+    assert found["car.inertia"].value == pytest.approx(1.0, rel=1e-3)
+
+
+def launch_of(pressure: Any) -> dict[str, Any]:
+    """Speeds without noise."""
+    run = launch(pressure).simulate(2.5, times=LAUNCH_TIMES)
+    return {name: run[name] for name in ("engine.speed", "car.speed")}
+
+
+def test_a_wrong_unit_that_the_numbers_make_up_for_is_noted() -> None:
+    """A torque that is thousand times too small looks as an inertia that is thousand times too large."""
+    d = cw.Driveline("push")
+    load = d.shaft("load", inertia=1.0)
+    d.add(cw.Torque("push", shaft=load, torque=0.0))
+    measured = 50.0 * LAUNCH_TIMES
+    free = {"bounds": {"load.inertia": (1e-6, 1e6)}}
+    wrong = fit_records(
+        d, Record(LAUNCH_TIMES, {"load.speed": measured}, {"push.torque": 0.05}), "load.inertia", **free
+    )
+    assert "likely push.torque is in kN m and was taken as N m" in wrong.notes
+    right = fit_records(
+        d, Record(LAUNCH_TIMES, {"load.speed": measured}, {"push.torque": 50.0}), "load.inertia", **free
+    )
+    assert "likely" not in right.notes
 
 
 def test_time_and_a_speed_of_a_record_that_are_swapped_are_named() -> None:

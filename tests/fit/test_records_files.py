@@ -143,7 +143,10 @@ def test_columns_without_units_are_noted(tmp_path: Path) -> None:
     told = "run: n_eng, n_load of the file have no unit and were taken as rad/s; give one with the name, such as "
     assert told + "'n_eng [1/min]'" in found.notes
     assert told in str(caught.value)
-    assert "likely engine.speed is in 1/min and was taken as rad/s: give units=" in str(caught.value)
+    said = (
+        "likely engine.speed and load.speed are in 1/min and were taken as rad/s: give 'n_eng [1/min]' and 'n_load [1"
+    )
+    assert said in str(caught.value)
     assert "p1" not in found.notes
 
 

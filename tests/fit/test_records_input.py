@@ -25,7 +25,8 @@ NAN = {"load.speed": np.where(np.arange(126) == 3, np.nan, 1.0)}
         (replace(ONE, measured={"load.speed": [1.0, 2.0]}), "has 2 samples for 126 instants"),
         (replace(ONE, measured=NAN), r"load.speed is nan at sample 3, 0.06 s; remove samples"),
         (replace(ONE, measured={"load.speed": ["a"] * 126}), "is not a number"),
-        (replace(ONE, time=two.TIMES[::-1]), "time does not rise at sample 1, 2.48 s"),
+        (replace(ONE, time=two.TIMES[::-1]), "time does not rise at sample 1, 2.48 s; sort the samples by time"),
+        (replace(ONE, time=[0.0], measured={"load.speed": [1.0]}), "does not rise; give at least two instants"),
         (replace(ONE, time=two.TIMES - 1.0), "begins at -1 s, and the run at 0 s; count time from the begin"),
         (replace(ONE, units={"load.speed": "rmp"}), r"unknown unit 'rmp'.*give it in \[rad/s\]"),
         (replace(ONE, units={"load.speed": "bar"}), "has a unit that does not fit"),
@@ -96,10 +97,39 @@ def test_all_mistakes_are_named_at_once() -> None:
     poor = replace(ONE, measured={"load.spede": two.TIMES, "engine.speed": [1.0]}, units={"engine.speed": "rmp"})
     with pytest.raises(FitError) as caught:
         fit_records(two.discs(), [poor, replace(ONE, time=two.TIMES[::-1])], ["load.inertia"])
-    assert len(caught.value.problems) == 4
+    # time that falls is so for all signals of a record
+    assert len(caught.value.problems) == 3
     text = str(caught.value)
-    for part in ("4 problems", "record 1: measured has no signal 'load.spede'", "record 2: time does not rise"):
+    for part in ("3 problems", "record 1: measured has no signal 'load.spede'", "record 2: time does not rise"):
         assert part in text
+    assert "sort the samples by time" in text
+
+
+def test_a_wrong_record_hides_no_wrong_name() -> None:
+    poor = replace(ONE, measured={"load.spede": two.TIMES}, start={"load.inertia": 1.0})
+    free = ["c1.gian", "c1.locked", "engine.inertia", "load.inertia"]
+    bounds = {"engine.inertia": (2.0, 1.0), "c1.gian": (1e-4, 1e-3), "c1.gain": (1e-4, 1e-3)}
+    with pytest.raises(FitError) as caught:
+        fit_records(two.discs(), poor, free, bounds=bounds, starts=0, loss="hubre")
+    for part in (
+        "starts is 0",
+        "did you mean 'huber'",
+        "load.inertia is free, and record 1 sets it",
+        "measured has no signal 'load.spede'",
+        "free has no 'c1.gian'; did you mean 'c1.gain'",
+        "c1.locked is a choice",
+        "bounds of engine.inertia are swapped",
+        "bounds are given for 'c1.gain', which is not free",
+    ):
+        assert part in str(caught.value)
+    assert len(caught.value.problems) == 8
+
+
+def test_a_wrong_name_hides_no_wrong_bound() -> None:
+    with pytest.raises(FitError) as caught:
+        fit_records(two.discs(), ONE, ["c1.gian", "load.inertia"], bounds={"load.inertia": (2.0, 1.0)})
+    assert len(caught.value.problems) == 2
+    assert "bounds of load.inertia are swapped" in str(caught.value)
 
 
 def test_a_run_that_ends_early_is_refused() -> None:

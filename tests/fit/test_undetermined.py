@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from typing import Any
 
 import numpy as np
@@ -173,3 +174,16 @@ def test_an_open_result_can_be_made_an_error() -> None:
     sound = fit_law(law, **slid(law, np.linspace(1.0, 5.0, 50)), free=["kinetic"])
     assert sound.raise_for_status() is sound
     assert sound.message == ""
+
+
+def test_changes_that_go_together_are_shares_of_the_values() -> None:
+    """Of a coefficient that went far from its start value, as with a load in kN m."""
+    slip = 40.0 * np.sin(0.009 * np.pi * np.arange(400)) + 5.0
+    law = cw.Stribeck(static=0.13, kinetic=0.1, speed=3.0, viscous=1e-4)
+    start = cw.Stribeck(static=0.2, kinetic=0.08, speed=2.0, viscous=3e-4)
+    poor = slid(law, slip, load=300.0, noise=0.6)
+    result = fit_law(start, **poor | {"load": 0.3})
+    shares = [float(one) for one in re.findall(r"([+-][\d.]+) %", " ".join(p.direction for p in result.undetermined))]
+    assert shares
+    assert max(map(abs, shares)) < 100.0
+    assert "the samples hardly change when these change together: " in result.message

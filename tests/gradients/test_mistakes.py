@@ -42,6 +42,26 @@ def test_a_function_that_cannot_be(name: str) -> None:
     assert text in str(caught.value)
 
 
+def test_a_wrong_number_hides_no_wrong_output() -> None:
+    given = {
+        "of": ["load.sped", cw.lock("c2"), 3, cw.rms_jerk("load")],
+        "by": ["c1.gian", BY],
+        "side": "up",
+        "threads": 0,
+    }
+    with pytest.raises(cw.UseError) as caught:
+        cw.differentiable(launch(), 2.0, **given)  # type: ignore[arg-type]
+    said = "\n".join(caught.value.problems)
+    # what is no output at all hides names of others
+    for text in ("3 is not an output", "for calibrate alone", "did you mean 'c1.gain'", "side is 'up'", "threads is 0"):
+        assert text in said
+    with pytest.raises(cw.UseError) as caught:
+        launch().simulate(2.0).gradient(of=["load.sped", cw.lock("c2")], by="c1.gian")
+    said = "\n".join(caught.value.problems)
+    for text in ("did you mean 'load.speed'", "no contact 'c2'", "did you mean 'c1.gain'"):
+        assert text in said
+
+
 def test_a_driveline_without_contacts_says_so() -> None:
     d = cw.Driveline("free")
     d.shaft("a", inertia=1.0, speed=1.0)

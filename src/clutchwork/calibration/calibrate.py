@@ -6,12 +6,13 @@ import os
 from collections.abc import Callable, Mapping, Sequence
 from typing import TYPE_CHECKING, Any, Unpack
 
-from clutchwork.base import UseError, near, quote
+from clutchwork.base import near, quote
+from clutchwork.base.mistakes import Mistakes
 from clutchwork.base.paths import path_fault, path_of
 from clutchwork.base.progress import followed
 from clutchwork.calibration.limits import Limit
 from clutchwork.calibration.memory import Checkpoint
-from clutchwork.calibration.problem import CalibrationProblem, Mistakes, problem, refuse_bounds
+from clutchwork.calibration.problem import CalibrationProblem, problem, refuse_bounds
 from clutchwork.calibration.record import SearchSettings
 from clutchwork.calibration.result import Calibration, CalibrationInterrupted, found_by
 from clutchwork.calibration.scatter import Scatter
@@ -80,23 +81,26 @@ def calibrate(
     Ctrl-C raises `CalibrationInterrupted`, a KeyboardInterrupt, whose `calibration` holds the best so far. All
     mistakes of the call are named at once, by UseError. docs/guide/calibrate.md
     """
-    if "solver" in changes:
-        raise UseError("calibrate", ["solver is given, but SLSQP is the only solver: leave it out"])
+    mistakes, given = Mistakes(), dict[str, Any](changes)
+    if given.pop("solver", None) is not None:
+        mistakes.found.append("solver is given, but SLSQP is the only solver: leave it out")
     system = model_of("calibrate", model, options)
-    given = {**changes} if t_end is None else {**changes, "t_end": t_end}
+    given |= {} if t_end is None else {"t_end": t_end}
     tight = {name: value for name, value in TIGHT.items() if name not in changes and options is None}
     end, chosen = merged(system.settings, {**given, **tight}, options)
     plain = chosen.changed({"dt": None, "times": None})
-    mistakes = Mistakes()
     counts = {"starts": starts, "samples": samples, "threads": threads, "iterations": iterations}
     mistakes.found += _faults(counts, seed, tolerance, robust, file)
+    if robust == "worst" and scatter is None:
+        such = "scatter={'c1.friction.kinetic': (0.09, 0.11)}"
+        mistakes.found.append(f"robust is 'worst', and nothing scatters: give {such}, or leave robust out")
     wanted = mistakes.caught(
-        lambda: problem(system, TimeSpan(plain.t_start, end), free, minimise, subject_to, scatter), None
+        lambda: problem(system, TimeSpan(plain.t_start, end), plain, free, minimise, subject_to, scatter), None
     )
     if wanted is not None and wanted.scatter and robust == "mean":
         mistakes.found += _no_mean(wanted)
-    if mistakes.found or wanted is None:
-        raise UseError("calibrate", mistakes.found)
+    mistakes.refuse("calibrate")
+    assert wanted is not None  # noqa: S101, what is wrong with it was refused
     refuse_bounds(wanted)
     asked = SearchSettings(plain, starts, samples, robust, threads, seed, tolerance, iterations)
     return searched(wanted, asked, None if file is None else path_of("calibrate", file, "shift.json"), progress)

@@ -2,21 +2,24 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from functools import cached_property, partial
 from typing import Any
 
 import numpy as np
 
 from clutchwork.assembly.system import System
-from clutchwork.base import ModelError, UseError, dataclass, quote
+from clutchwork.base import ModelError, dataclass, quote
 from clutchwork.base.arrays import Array
 from clutchwork.base.errors import Problem as Wrong
+from clutchwork.base.mistakes import Mistakes
 from clutchwork.calibration.limits import Limit, Settled, WeightedSum, summed
 from clutchwork.calibration.moves import Moves, Variable
 from clutchwork.calibration.names import TimeTable, curve, numbers
-from clutchwork.calibration.terms import OutputUnits, SquaredSlope, TimeSpan
+from clutchwork.calibration.terms import Jerk, OutputUnits, SquaredSlope, TimeSpan
 from clutchwork.calibration.together import FACTOR, VALUE, Together
+from clutchwork.declare.options import Options
+from clutchwork.gradients.differentiable import refuse_outputs
 from clutchwork.gradients.parameters import Tunable, changes
 from clutchwork.sweeps.numbers import pair
 
@@ -78,23 +81,8 @@ class CalibrationProblem:
         return np.array([one.high for one in self.unknowns])
 
 
-class Mistakes:
-    """All that is wrong with a call."""
-
-    def __init__(self) -> None:
-        self.found = list[str]()
-
-    def caught(self, what: Callable[[], Any], instead: Any) -> Any:
-        """What a function gives; where it refuses, something instead."""
-        try:
-            return what()
-        except UseError as error:
-            self.found += error.problems
-            return instead
-
-
 def problem(
-    system: System, span: TimeSpan, free: Any, minimise: Any, subject_to: Any, scatter: Any
+    system: System, span: TimeSpan, options: Options, free: Any, minimise: Any, subject_to: Any, scatter: Any
 ) -> CalibrationProblem:  # fmt: skip
     """What the arguments of a call mean; UseError names all that is wrong with them."""
     mistakes, units = Mistakes(), OutputUnits(system)
@@ -107,6 +95,7 @@ def problem(
     sums = [one for one in (goal, *(limit.what for limit in limits)) if one is not None]
     stems = dict.fromkeys(stem for one in sums for stem in one.tables)
     curves = {stem: mistakes.caught(partial(curve, system, stem), None) for stem in stems}
+    mistakes.caught(partial(refuse_outputs, system, _outputs(sums, span), options, span.end), None)
     moved = unknowns[1] | spread[1]
     mistakes.found += [*_twice(unknowns[0]), *_scattered(unknowns[0], spread[0]), *outside(unknowns[0], moved)]
     # factors and shifts need not hold the nominal ones: a lining may only wear
@@ -114,10 +103,16 @@ def problem(
     if not mistakes.found and goal is not None:
         mistakes.found += [fault for one in sums for fault in one.faults(span, curves)]
         mistakes.found += _restless(goal)
-    if mistakes.found or goal is None:
-        raise UseError("calibrate", list(dict.fromkeys(mistakes.found)))
+    mistakes.refuse("calibrate")
+    assert goal is not None  # noqa: S101, what is wrong with it was refused
     made = (tuple(unknowns[0]), tuple(spread[0]), tuple(moved.values()))
     return CalibrationProblem(system, span, *made, goal, tuple(limits), curves, goal.unit(units))
+
+
+def _outputs(sums: Sequence[WeightedSum], span: TimeSpan) -> dict[str, Any]:
+    """The outputs of sums whose windows fit into a run."""
+    terms = [one for each in sums for one, _ in each.terms if not (isinstance(one, Jerk) and one.faults(span))]
+    return {str(number): one for number, one in enumerate(needed for one in terms for needed in one.needs(span))}
 
 
 def _unknowns(system: System, what: str, given: Any, mistakes: Mistakes) -> tuple[list[Variable], dict[str, Tunable]]:

@@ -132,9 +132,14 @@ def _problems(
     by_place = [p.name for p in parameters if p.kind in (p.POSITIONAL_ONLY, p.POSITIONAL_OR_KEYWORD)]
     known = [p.name for p in parameters if p.name not in OWNERS and p.kind in (p.POSITIONAL_OR_KEYWORD, p.KEYWORD_ONLY)]
     open_ended = any(p.kind is p.VAR_KEYWORD for p in parameters)
-    unknown = [] if open_ended else [name for name in named if name not in known]
     given = {*by_place[: len(args)], *named}
-    meant = {nearest(name, [other for other in known if other not in given]) for name in unknown}
+    open_names = [other for other in known if other not in given]
+    unknown = [name for name in named if name not in known]
+    if open_ended:
+        # others may be options: only what stands for an argument that is missing is none
+        lacking = [p.name for p in parameters if p.name in open_names and p.default is p.empty]
+        unknown = [name for name in unknown if nearest(name, lacking)]
+    meant = {nearest(name, open_names) for name in unknown}
     spare = () if any_number else args[len(by_place) :]
     if spare:
         # those that must be given first

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
+from numbers import Real
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -11,7 +12,7 @@ from clutchwork.base import ModelError, Problem, UseError, dataclass, listed
 from clutchwork.declare.node import Signal
 from clutchwork.declare.options import Options
 from clutchwork.fit.failure import FitError
-from clutchwork.fit.traces import Trace, label, row, traces
+from clutchwork.fit.traces import Trace, in_si, label, row, traces
 from clutchwork.model.changes import Owners, named, target, targets_of, unit_of
 from clutchwork.results.channels import channels
 from clutchwork.run.simulation import simulate
@@ -114,9 +115,11 @@ def _told(one: Problem, of: str) -> tuple[str, str, str]:
 
 def _signal(system: System, record: Record, name: str, given: Any, of: str) -> Any:
     """What drives an input: samples as a table over time, anything else as it is."""
-    if isinstance(given, Signal | str) or np.ndim(given) == 0:
+    if isinstance(given, Signal | str):
         return given
     aim = target(named(system.source), name) if system.source else None
+    if np.ndim(given) == 0:
+        return in_si(record, name, given, unit_of(aim), of) if aim and isinstance(given, Real) else given
     if system.source and aim is None:
         # whatever the unit
         _, (unknown,) = targets_of(system.source, [name])

@@ -30,7 +30,8 @@ class Parameter:
         return not self.reason
 
     def __str__(self) -> str:
-        open_ends = [self.reason, self.direction and f"the samples hardly depend on {self.direction}", self.experiment]
+        together = self.direction and f"the samples hardly change when these change together: {self.direction}"
+        open_ends = [self.reason, together, self.experiment]
         return f"{self.name} is not determined: " + "; ".join(part for part in open_ends if part)
 
 

@@ -16,6 +16,7 @@ from clutchwork.fit.model import model_of
 from clutchwork.fit.ordinates import axis, is_outside
 from clutchwork.fit.search import Residuals, derivatives
 from clutchwork.fit.sliding import coefficients
+from clutchwork.fit.words import plain
 
 if TYPE_CHECKING:
     from clutchwork.fit.unknowns import Unknowns
@@ -131,7 +132,7 @@ def _steady(search: Residuals, u: Array, temperature: float | None) -> Iterator[
         near = int(np.sum((slip > centre / 2.0) & (slip < centre * 2.0) & there))
         seen = f"{near or 'no'} sample{'' if near == 1 else 's'} within a factor 2"
         seen += " of that" if warm is None else f" and {NEAR:g} K of that"
-        words = f"measure steady slip near {centre:.2g} {_units(search)[0]}{_at(temperature)} ({seen})"
+        words = f"measure steady slip near {plain(centre)} {_units(search)[0]}{_at(temperature)} ({seen})"
         yield _planned(search, u, words, np.linspace(0.0, 1.0, SAMPLES), sweep, temperature)
 
 

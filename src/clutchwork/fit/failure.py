@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 
 from clutchwork.base import ClutchworkError, advised, counted
 from clutchwork.base.extras import need
+from clutchwork.fit.words import plain
 
 
 class FitError(ClutchworkError, ValueError):
@@ -30,7 +31,8 @@ class FitError(ClutchworkError, ValueError):
 
 
 def refuse(problems: Sequence[FitError]) -> None:
-    """Raise what is wrong, all of it at once; nothing where nothing is."""
+    """Raise what is wrong, all of it at once and each once; nothing where nothing is."""
+    problems = list({str(one): one for one in problems}.values())
     if len(problems) == 1:
         raise problems[0]
     if problems:
@@ -48,7 +50,7 @@ def described_by_nothing(r2: float, causes: Sequence[str], result: Any) -> FitEr
 
     Parameters: causes, those that are likely.
     """
-    told = f"describes the samples worse than their mean does: r2 is {r2:.3g}"
+    told = f"describes the samples worse than their mean does: r2 is {plain(r2, 3)}"
     usual = "check units (1/min or rad/s), that no columns are swapped, the load, what is not free and the bounds, try "
     usual += "other start values, another law or model, or loss='soft_l1' for samples that are off"
     error = FitError("fit", "; ".join([told, *causes]), usual)

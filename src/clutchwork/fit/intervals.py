@@ -86,7 +86,7 @@ def estimate(search: LeastSquares, u: Array, confidence: float) -> Estimate:
             least.tolist() if search.zeros else [0.0] * len(rows), strict=True,
         )
     ]  # fmt: skip
-    directions = reasons.directions(known, spread, search.items, why)
+    directions = reasons.directions(known, spread, search.items, codes, why)
     return Estimate(sqrt(variance), t**2 * variance, covariance, limits, why, directions, correlated, felt[equations])
 
 

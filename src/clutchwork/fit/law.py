@@ -28,7 +28,7 @@ from clutchwork.fit.misfit import DESCRIBED, is_worse, patterns
 from clutchwork.fit.model import model_of
 from clutchwork.fit.ordinates import check_inside
 from clutchwork.fit.profile_intervals import widened
-from clutchwork.fit.readings import likely, of_units
+from clutchwork.fit.readings import likely, of_coefficients, of_units
 from clutchwork.fit.result import FitResult
 from clutchwork.fit.search import TORQUE, Residuals
 from clutchwork.fit.sliding import Sliding, noisy
@@ -128,8 +128,8 @@ def _fit(
     worse = is_worse(r2, int(np.sum(search.model.equations)))
     # runs of the core for a few percent would take long
     if worse or (doubts and search.model.exact):
-        doubts += _turned(search)
-        doubts += likely(samples, 1.0 - r2, lambda other: _share(*searched(other)))
+        hints = [*_turned(search), *likely(samples, 1.0 - r2, lambda other: _share(*searched(other)))]
+        doubts = [*hints, *doubts] if worse else [*doubts, *hints]
     result = _result(search, solution, found, confidence, r2, doubts)
     if worse:
         raise described_by_nothing(r2, doubts, result)
@@ -212,6 +212,7 @@ def _result(
 def _remarks(search: Residuals, residuals: Array, parameters: Sequence[Parameter]) -> list[str]:
     """What to know about samples and search."""
     model, made = search.model, of_units(parameters)
+    made += of_coefficients(parameters, translation=search.measured.translation)
     unit, force = ("m/s", "N") if search.measured.translation else ("rad/s", "N m")
     if isinstance(model, Sliding) and len(model.noisy):
         made.append(

@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from clutchwork.base.arrays import Array
+from clutchwork.fit.words import share
 
 # a pattern is one that noise has in one of so many fits: the deviations of a normal distribution beyond which that is
 CHANCE, BEYOND = 1e-3, 3.09
@@ -43,8 +44,8 @@ def patterns(rows: dict[str, Array], size: float) -> list[str]:
     """
     found = {name: pattern(row) / size for name, row in rows.items() if size > 0.0}
     return [
-        f"the residuals are not noise: over the {name} they have a pattern of {100 * share:.2g} % of the samples "
+        f"the residuals are not noise: over the {name} they have a pattern of {share(size)} the samples "
         f"(noise would have it once in {1 / CHANCE:.0f} fits)"
-        for name, share in found.items()
-        if share > SMALL
+        for name, size in found.items()
+        if size > SMALL
     ]

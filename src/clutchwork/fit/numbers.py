@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from dataclasses import replace
 from math import inf, nextafter
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -61,15 +61,16 @@ class Numbers:
 
 def numbers(records: Sequence[Driven], free: Sequence[str], own: Sequence[str], bounds: Bounds) -> Numbers:
     """The free numbers with their bounds; FitError names all that cannot be searched for."""
-    shared, problems = [name for name in free if name not in own], list[FitError]()
-    found, count = _found(records, shared, own)
+    shared = [name for name in free if name not in own]
+    if _tunables(records[0].system, [*shared, *own])[1]:
+        refuse(faults(records[0].system, [*shared, *own], bounds))
+    count = len(parameters(records[0].system, shared)) if shared else 0
+    found, problems = [list(parameters(one.system, [*shared, *own])) for one in records], list[FitError]()
     made = [_item(one, one.name, bounds, problems) for one in found[0][:count]]
     for record, all_of in zip(records, found, strict=True):
         of = f" ({record.label})" if len(records) > 1 else ""
         made += [_item(one, f"{one.name}{of}", bounds, problems) for one in all_of[count:]]
-    known = {key for one in found[0] for key in _keys(one.name)}
-    told = ((name, f"are given for {name!r}, which is not free{near(name, known)}") for name in bounds)
-    problems += [FitError("bounds", what, "free it, or take them out") for name, what in told if name not in known]
+    problems += _not_free(found[0], bounds)
     samples = sum(len(one.times) for record in records for one in record.traces)
     if samples <= len(made):
         problems.append(FitError("samples", f"are {samples} for {len(made)} numbers", "record more of them"))
@@ -79,30 +80,49 @@ def numbers(records: Sequence[Driven], free: Sequence[str], own: Sequence[str], 
     return Numbers(tuple(made), count, tuple(one.name for one in found[0]), sizes)
 
 
-def _found(records: Sequence[Driven], shared: Sequence[str], own: Sequence[str]) -> tuple[list[list[Tunable]], int]:
-    """The numbers of each record, and how many of them all have in common."""
-    refuse(list(_unknown(records[0].system, [*shared, *own])))
-    try:
-        count = len(parameters(records[0].system, shared)) if shared else 0
-        return [list(parameters(one.system, [*shared, *own])) for one in records], count
-    except UseError as error:
-        told = (text.partition("; ") for text in error.problems)
-        refuse([FitError("free", what, remedy or "name another number") for what, _, remedy in told])
-        raise
+def faults(system: System, names: Sequence[str], bounds: Bounds) -> list[FitError]:
+    """All that is wrong with names of free numbers, and with bounds, without a look at records."""
+    found, problems = _tunables(system, names)
+    for one in found:
+        _item(one, one.name, bounds, problems)
+    return [*problems, *_not_free(found, {name: pair for name, pair in bounds.items() if name not in names})]
 
 
-def _unknown(system: System, names: Sequence[str]) -> Iterator[FitError]:
-    """Names that lead nowhere."""
-    if system.source is None:
-        return
-    owners, known = named(system.source), list(all_names(system.source))
+def _tunables(system: System, names: Sequence[str]) -> tuple[list[Tunable], list[FitError]]:
+    """The numbers that names mean, and what is wrong with the other names."""
+    found, problems = list[Tunable](), list[FitError]()
     for name in names:
-        parts = ENTRY.fullmatch(name) if isinstance(name, str) else None
-        if target(owners, name) is None and (parts is None or target(owners, parts[1]) is None):
-            words = name.split(".") if isinstance(name, str) else []
-            is_there = any(".".join(words[:cut]) in owners for cut in range(1, len(words)))
-            like = near(name, known) if is_there else near(words[0] if words else "", owners)
-            yield FitError("free", f"has no {name!r}{like}", 'name a number of an element, "c1.gain"')
+        unknown = _unknown(system, name)
+        try:
+            found += [] if unknown else parameters(system, [name])
+        except UseError as error:
+            told = (text.partition("; ") for text in error.problems)
+            problems += [FitError("free", what, remedy or "name another number") for what, _, remedy in told]
+        problems += [unknown] if unknown else []
+    return found, problems
+
+
+def _not_free(found: Sequence[Tunable], bounds: Bounds) -> Iterator[FitError]:
+    """Bounds of what is not free."""
+    known = {key for one in found for key in _keys(one.name)}
+    for name in bounds:
+        if name not in known:
+            told = f"are given for {name!r}, which is not free{near(name, known)}"
+            yield FitError("bounds", told, "free it, or take them out")
+
+
+def _unknown(system: System, name: Any) -> FitError | None:
+    """What is wrong with a name that leads nowhere."""
+    if system.source is None:
+        return None
+    owners = named(system.source)
+    parts = ENTRY.fullmatch(name) if isinstance(name, str) else None
+    if target(owners, name) is not None or (parts is not None and target(owners, parts[1]) is not None):
+        return None
+    words = name.split(".") if isinstance(name, str) else []
+    is_there = any(".".join(words[:cut]) in owners for cut in range(1, len(words)))
+    like = near(name, all_names(system.source)) if is_there else near(words[0] if words else "", owners)
+    return FitError("free", f"has no {name!r}{like}", 'name a number of an element, "c1.gain"')
 
 
 def _keys(name: str) -> list[str]:

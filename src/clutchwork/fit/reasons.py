@@ -9,6 +9,7 @@ import numpy as np
 
 from clutchwork.base.arrays import Array
 from clutchwork.fit.information import FLOOR, Information
+from clutchwork.fit.words import plain
 
 if TYPE_CHECKING:
     from clutchwork.fit.unknown import Unknown
@@ -58,12 +59,12 @@ def wide(item: Unknown, code: float, half: float, confidence: float, size: float
     share = f"{100 * confidence:g} % interval"
     if item.is_log:
         factor = exp(min(half, log(1e9)))
-        shown = "many orders of magnitude" if factor > 1e6 else f"a factor {factor:.3g}"
+        shown = "many orders of magnitude" if factor > 1e6 else f"a factor {plain(factor, 3)}"
         return f"its {share} reaches {shown} either way" if factor > WIDE_FACTOR else ""
     if half <= WIDE_SHARE * max(abs(code), size):
         return ""
     if abs(code) < half:
-        return f"it cannot be distinguished from zero, its {share} is +- {half:.3g}"
+        return f"it cannot be distinguished from zero, its {share} is +- {plain(half, 3)}"
     return f"its {share} is +- {100 * half / abs(code):.3g} %"
 
 
@@ -75,24 +76,27 @@ def spans(item: Unknown, limits: tuple[float, float]) -> bool:
     return high - low > WIDE_SHARE * abs(high + low)
 
 
-def directions(known: Information, spread: Array, items: Items, reasons: list[str]) -> list[str]:
+def directions(known: Information, spread: Array, items: Items, codes: Array, reasons: list[str]) -> list[str]:
     """For every open parameter what changes with it along the direction in which its uncertainty is largest."""
     # share of each direction in the uncertainty of each parameter
     shares = np.abs(spread @ (known.directions / known.size).T) / np.maximum(known.singular, FLOOR)
     made = []
     for place, reason in enumerate(reasons):
         change = spread @ (known.directions[int(np.argmax(shares[place]))] / known.size)
-        made.append(_direction(_relative(change, items), place, items) if reason else "")
+        made.append(_direction(_relative(change, items), place, items, codes) if reason else "")
     return made
 
 
 def _relative(change: Array, items: Items) -> Array:
-    """Changes of codes as shares of the values."""
+    """Changes of codes as shares of the start values."""
     return np.asarray(change / np.array([item.scale for item in items]))
 
 
-def _direction(change: Array, place: int, items: Items) -> str:
-    """By how much the others change when this one grows by 1 %; empty where it is alone."""
-    shares = change / (change[place] or 1.0)
-    shown = [f"{i.name} {c:+.2g} %" for i, c in zip(items, shares.tolist(), strict=True) if abs(c) > INVOLVED]
+def _direction(change: Array, place: int, items: Items, codes: Array) -> str:
+    """By how much the values of others change when this one grows by 1 %; empty where it is alone."""
+    involved = np.abs(change) > INVOLVED * (np.abs(change[place]) or 1.0)
+    grown = np.array([1.0 if i.is_log else max(1.0, abs(c) / i.scale) for i, c in zip(items, codes, strict=True)])
+    shares = change / grown
+    moved = zip(items, (shares / (shares[place] or 1.0)).tolist(), involved.tolist(), strict=True)
+    shown = [f"{item.name} {plain(share, sign='+')} %" for item, share, is_in in moved if is_in]
     return ", ".join(shown) if len(shown) > 1 else ""

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
-from itertools import combinations
 from typing import Any
 
 import numpy as np
@@ -20,9 +19,9 @@ from clutchwork.fit.fitted_record import FittedRecord
 from clutchwork.fit.intervals import estimate
 from clutchwork.fit.losses import WIDTH, Penalty
 from clutchwork.fit.misfit import is_worse, patterns
-from clutchwork.fit.numbers import Numbers, numbers
-from clutchwork.fit.readings import FITS, RPM
+from clutchwork.fit.numbers import Numbers, faults, numbers
 from clutchwork.fit.record import Record
+from clutchwork.fit.record_readings import RecordReadings
 from clutchwork.fit.response_result import ResponseFit
 from clutchwork.fit.traces import label
 from clutchwork.fit.unknown import Pair
@@ -66,16 +65,29 @@ def fit_records(
     listed = [records] if isinstance(records, Record) else list(records)
     names, owned = _names(free), _names(own)
     problems = list(_faults(listed, names, owned, confidence, starts))
-    refuse(problems)
+    penalty = _penalty(loss, loss_width, problems)
     system = model if isinstance(model, System) else model.assemble()
-    found = driven(system, listed, problems)
+    found = driven(system, [one for one in listed if isinstance(one, Record)], problems)
+    if problems:
+        said = {one.quantity for one in problems}
+        problems += faults(system, [name for name in dict.fromkeys([*names, *owned]) if name not in said], bounds or {})
     refuse(problems)
-    return _solved(found, numbers(found, names, owned, bounds or {}), confidence, starts, Penalty(loss, loss_width))
+    descent = Descent(found, numbers(found, names, owned, bounds or {}), penalty)
+    return _solved(descent, RecordReadings(system, listed, descent), confidence, starts)
 
 
 def _names(given: Sequence[str] | str) -> list[str]:
     """One or several, each once."""
     return [given] if isinstance(given, str) else list(dict.fromkeys(given))
+
+
+def _penalty(kind: str, width: float, problems: list[FitError]) -> Penalty:
+    """The loss that is asked for, or least squares where something is wrong with it."""
+    try:
+        return Penalty(kind, width)
+    except FitError as error:
+        problems.append(error)
+        return Penalty()
 
 
 def _faults(records: list[Any], free: list[Any], own: list[Any], confidence: float, starts: int) -> Iterator[FitError]:
@@ -106,15 +118,19 @@ def _taken(record: Record, of: str, free: Sequence[str], own: Sequence[str]) -> 
             yield FitError(name, f"is free, and {of} sets it", remedy)
 
 
-def _solved(records: Sequence[Driven], searched: Numbers, confidence: float, starts: int, loss: Penalty) -> ResponseFit:
-    descent = Descent(records, searched, loss)
-    ended = descent.best(starts)
+def _solved(descent: Descent, readings: RecordReadings, confidence: float, starts: int) -> ResponseFit:
+    records, searched, ended = descent.records, descent.numbers, descent.best(starts)
     best = ended[0]
     what = estimate(descent, best.u, confidence)
     r2, odd = _share(descent, best), _doubts(descent, what.felt)
     worse = is_worse(r2, len(np.concatenate(descent.measured)))
-    hints = readings(descent)
-    doubts = [*odd, *(hints if worse or odd else ())]
+
+    def r2_of(others: Sequence[Driven]) -> float:
+        beside = Descent(others, searched, descent.loss)
+        return _share(beside, beside.best(1)[0])
+
+    hints = readings.fitted(1.0 - r2, r2_of) if worse or odd else readings.noted()
+    doubts = [*hints, *odd] if worse else [*odd, *(hints if odd else ())]
     values = searched.values(best.u)
     followed = tuple(_followed(record, searched, values[searched.places(k)]) for k, record in enumerate(records))
     notes = [*(note for record in records for note in record.notes), *(hints if not doubts else ())]
@@ -211,52 +227,3 @@ def _held(descent: Descent, u: Array) -> list[str]:
         except ModelError as error:
             return [f"the driveline refuses better values: {error.problems[0]}"]
     return []
-
-
-def readings(descent: Descent) -> list[str]:
-    """Readings with which the run at the start values is much closer to the samples."""
-    runs = _runs(descent)
-    return [told for told, ratio in (*_turns(descent, runs), *_swapped(descent, runs)) if ratio < FITS]
-
-
-def _runs(descent: Descent) -> list[Array]:
-    """Every trace as the run at the start values has it."""
-    residuals, first, made = descent.residuals(np.clip(descent.numbers.codes(), descent.lower, descent.upper)), 0, []
-    weights = np.concatenate(descent.weights)
-    for one in descent.traces:
-        part = slice(first, first + len(one.times))
-        made.append(one.values + residuals[part] * weights[part])
-        first = part.stop
-    return made
-
-
-def _turns(descent: Descent, runs: list[Array]) -> Iterator[tuple[str, float]]:
-    """Speeds that are in 1/min, or were converted twice, and what is left then."""
-    for name in descent.signals:
-        pairs = [(one, run) for one, run in zip(descent.traces, runs, strict=True) if one.signal == name]
-        if pairs[0][0].unit != "rad/s":
-            continue
-        now = sum(_off(run, one.values) for one, run in pairs) or 1.0
-        told = f"likely {name} is in 1/min and was taken as rad/s: give units={{{name!r}: '1/min'}}"
-        yield told, sum(_off(run, RPM * one.values) for one, run in pairs) / now
-        told = f"likely {name} is in rad/s and was taken as 1/min"
-        yield told, sum(_off(run, one.values / RPM) for one, run in pairs) / now
-
-
-def _swapped(descent: Descent, runs: list[Array]) -> Iterator[tuple[str, float]]:
-    """Signals of a record that are each other, and what is left then."""
-    pairs, first = list(zip(descent.traces, runs, strict=True)), 0
-    for record in descent.records:
-        own = pairs[first : first + len(record.traces)]
-        first += len(own)
-        of = f" of {record.label}" if len(descent.records) > 1 else ""
-        for (one, run), (other, beside) in combinations(own, 2):
-            if np.array_equal(one.times, other.times):
-                now = _off(run, one.values) + _off(beside, other.values)
-                left = _off(run, other.values) + _off(beside, one.values)
-                yield f"likely {one.signal} and {other.signal}{of} are swapped", left / (now or 1.0)
-
-
-def _off(run: Array, values: Array) -> float:
-    """Squares of what is left, over those of the run."""
-    return float(np.sum((run - values) ** 2)) / (float(np.sum(run**2)) or 1.0)

@@ -80,8 +80,8 @@ def row(record: Record, name: str, given: Any, unit: str, of: str) -> tuple[Arra
     falls = np.flatnonzero(~(np.diff(times) > 0.0)) + 1
     if len(times) < 2 or len(falls):
         where = f" at sample {falls[0]}, {times[falls[0]]:g} s" if len(falls) else ""
-        told, other = f"does not rise{where}", rising({name: found})
-        raise FitError(f"{of}{_of_time(given, name)}", told, f"give a row of at least two instants [s]{other}")
+        remedy = f"sort the samples by time{rising({name: found})}" if len(falls) else "give at least two instants [s]"
+        raise FitError(f"{of}{_of_time(given, name)}", f"does not rise{where}", remedy)
     if not np.all(np.isfinite(times)):
         told = f"is from {times[0]:g} to {times[-1]:g} s"
         raise FitError(f"{of}{_of_time(given, name)}", told, "give finite instants [s]")
@@ -91,13 +91,18 @@ def row(record: Record, name: str, given: Any, unit: str, of: str) -> tuple[Arra
     if len(bad):
         remedy = "remove samples that were not measured"
         raise FitError(f"{of}{name}", f"is {found[bad[0]]} at sample {bad[0]}, {times[bad[0]]:g} s", remedy)
-    if name in record.units:
-        try:
-            scale = scale_to_si(record.units[name], unit)
-        except QuantityError as error:
-            raise FitError(f"{of}{name}", f"{error.message}: {error.value}", error.remedy) from None
-        found = found * scale.factor + scale.zero
-    return times, found
+    return times, in_si(record, name, found, unit, of)
+
+
+def in_si(record: Record, name: str, given: Any, unit: str, of: str) -> Any:
+    """Numbers in SI, by the unit that a record gives for them."""
+    if name not in record.units:
+        return given
+    try:
+        scale = scale_to_si(record.units[name], unit)
+    except QuantityError as error:
+        raise FitError(f"{of}{name}", f"{error.message}: {error.value}", error.remedy) from None
+    return given * scale.factor + scale.zero
 
 
 def _of_time(given: Any, name: str) -> str:

@@ -68,7 +68,7 @@ def unknowns_of(law: Law, name: str, spec: Spec, unit: str, bounds: Bounds) -> l
 
 
 def _made(name: str, spec: Spec, unit: str, start: float, field: str, point: int | None, given: Pair) -> Unknown:
-    lowest, highest = _limits(spec, start, point, given)
+    lowest, highest = _limits(name, spec, start, point, given)
     lower, upper = lowest, highest
     if lower > 0.0 and start > 0.0:
         lower, upper = max(lower, start / REACH), min(upper, start * REACH)
@@ -82,13 +82,15 @@ def _made(name: str, spec: Spec, unit: str, start: float, field: str, point: int
     return Unknown(name, unit, start, words, lower, upper, lowest, highest, field, point, over)
 
 
-def _limits(spec: Spec, start: float, point: int | None, given: Pair) -> tuple[float, float]:
+def _limits(name: str, spec: Spec, start: float, point: int | None, given: Pair) -> tuple[float, float]:
     """Bounds of the declaration, narrowed by given ones."""
     lowest, highest = spec.ends
     # an ordinate is a coefficient or a share: it keeps its sign
     if point is not None:
         lowest = max(lowest, nextafter(0.0, inf) if start > 0.0 else 0.0)
     lower, upper = given
+    if lower is not None and upper is not None and lower > upper:
+        raise FitError("bounds", f"of {name} are swapped: ({lower:g}, {upper:g})", f"give ({upper:g}, {lower:g})")
     return max(lowest, -inf if lower is None else float(lower)), min(highest, inf if upper is None else float(upper))
 
 

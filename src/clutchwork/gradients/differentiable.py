@@ -12,13 +12,14 @@ from numpy.typing import NDArray
 
 from clutchwork.base.classes import dataclass
 from clutchwork.base.errors import ModelError, UseError, near
+from clutchwork.base.mistakes import Mistakes
 from clutchwork.base.plural import counted
 from clutchwork.base.quote import quote
 from clutchwork.declare.calls import explained, explained_methods
 from clutchwork.declare.options import Options
 from clutchwork.declare.ports import directions
 from clutchwork.gradients.exact import Exact
-from clutchwork.gradients.parameters import parameters
+from clutchwork.gradients.parameters import Tunable, parameters
 from clutchwork.gradients.settled import SIDES
 from clutchwork.gradients.task import GradientTask, GradientValues
 from clutchwork.laws.bases.formula import FormulaLaw
@@ -242,24 +243,27 @@ def made(
     system: System, of: Any, by: Any, t_end: float, options: Options, threads: int | None, side: Any = None
 ) -> Differentiable:
     """The function for the requested outputs."""
-    if side is not None and side not in SIDES:
-        raise UseError("gradient", [f"side is {quote(side)}: give 'left' or 'right', or leave it out"])
-    if options.method == "fixed":
-        raise UseError("gradient", ['method is "fixed": derivatives follow the motion between events; leave it out'])
-    try:
-        outputs = asked(of)
-        _refuse(system, outputs)
-        chosen = parameters(system, by)
-        CoreOutputs.of(system, options, outputs, t_end)
-    except UseError as error:
-        # outputs are those of a sweep, and say so
-        raise UseError("gradient", error.problems) from None
+    mistakes = Mistakes()
+    mistakes.found += _faults(options, side)
+    count = mistakes.caught(lambda: threads_of(threads, "gradient"), 1)
+    outputs: dict[str, Output] = mistakes.caught(lambda: asked(of), {})
+    mistakes.caught(lambda: refuse_outputs(system, outputs, options, t_end), None)
+    chosen: tuple[Tunable, ...] = mistakes.caught(lambda: parameters(system, by), ())
+    mistakes.refuse("gradient")
     known = channels(system, options.angles, options.work)
     labels = [(label, unit_of(one, known)) for name, one in outputs.items() for label in _labels(name, one)]
     names, units = zip(*labels, strict=True)
-    task = GradientTask(system, outputs, chosen, t_end, options, threads_of(threads, "gradient"), names, side)
+    task = GradientTask(system, outputs, chosen, t_end, options, count, names, side)
     by_units = tuple(one.unit for one in chosen)
     return Differentiable(task, Exact(task), names, tuple(one.name for one in chosen), units, by_units)
+
+
+def _faults(options: Options, side: Any) -> Iterator[str]:
+    """What is wrong with settings."""
+    if side is not None and side not in SIDES:
+        yield f"side is {quote(side)}: give 'left' or 'right', or leave it out"
+    if options.method == "fixed":
+        yield 'method is "fixed": derivatives follow the motion between events; leave it out'
 
 
 def _labels(name: str, one: Output) -> list[str]:
@@ -269,8 +273,16 @@ def _labels(name: str, one: Output) -> list[str]:
     return [f"{name} {time:.12g} s" for time in one.times]
 
 
-def _refuse(system: System, outputs: Mapping[str, Output]) -> None:
-    """What has no derivative, whatever the numbers."""
+def refuse_outputs(system: System, outputs: Mapping[str, Output], options: Options, t_end: float) -> None:
+    """UseError names outputs that are not there, and all that has no derivative, whatever the numbers."""
+    mistakes = Mistakes()
+    mistakes.caught(lambda: CoreOutputs.of(system, options, outputs, t_end), None)
+    mistakes.found += _without_derivative(system, outputs)
+    mistakes.refuse("gradient")
+
+
+def _without_derivative(system: System, outputs: Mapping[str, Output]) -> list[str]:
+    """What has no derivative."""
     problems = [
         f"{name} is a Python function, which has no derivative; "
         "take signals, or cw.squared_jerk, and differentiate what you make of them"
@@ -289,5 +301,4 @@ def _refuse(system: System, outputs: Mapping[str, Output]) -> None:
         for name, jump in jumps
         if jump
     ]
-    if problems:
-        raise UseError("gradient", problems)
+    return problems

@@ -7,12 +7,14 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
+from functools import partial
 from typing import TYPE_CHECKING, Any, TypeAlias
 
 import numpy as np
 from numpy.typing import NDArray
 
 from clutchwork.base import UseError, quote
+from clutchwork.base.mistakes import Mistakes
 from clutchwork.declare.calls import explained
 from clutchwork.declare.options import instants
 from clutchwork.results.felt import WINDOW, felt_jerk
@@ -355,10 +357,14 @@ def _counted(call: str, number: object) -> int:
 
 def asked(outputs: Any) -> dict[str, Output]:
     """The outputs that a call means, by the name that the result gives them."""
+    mistakes = Mistakes()
     if isinstance(outputs, Mapping) and outputs:
-        return {str(name): _output(one) for name, one in outputs.items()}
+        by_name = {str(name): mistakes.caught(partial(_output, one), AtEnd("")) for name, one in outputs.items()}
+        mistakes.refuse("sweep")
+        return by_name
     listed = [outputs] if isinstance(outputs, str) or callable(outputs) or not hasattr(outputs, "__iter__") else outputs
-    made = [_output(one) for one in listed]
+    made = [mistakes.caught(partial(_output, one), AtEnd("")) for one in listed]
+    mistakes.refuse("sweep")
     found = dict[str, Output]()
     for one in made:
         if one.name in found and found[one.name] != one:
