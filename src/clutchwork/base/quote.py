@@ -48,6 +48,17 @@ def shortened(text: str, longest: int = 4 * LONGEST) -> str:
     return f"{text[:half]}...{text[-half:]}"
 
 
+def measured(value: float, unit: str) -> str:
+    """A number with its unit, which is left out where it is 1."""
+    return f"{value:g}" if unit in ("", "1") else f"{value:g} {unit}"
+
+
+def apart(value: float, other: float) -> str:
+    """A number with as many digits as tell it from another one, at least six."""
+    digits = (count for count in range(6, 17) if f"{value:.{count}g}" != f"{other:.{count}g}")
+    return f"{value:.{next(digits, 17)}g}"
+
+
 def printable(text: str) -> str:
     """A string whose control characters, and others that cannot be printed, are written as escapes."""
     if text.isprintable():

@@ -28,7 +28,7 @@ from clutchwork.run.control import controllers
 from clutchwork.run.settings import merged, refuse_endless
 from clutchwork.run.simulation import Assembles, model_of
 from clutchwork.sweeps.batch import CoreOutputs
-from clutchwork.sweeps.outputs import Asked, AtTimes, Computed, Output, asked
+from clutchwork.sweeps.outputs import Asked, AtEnd, AtTimes, Computed, Output, asked
 from clutchwork.sweeps.request import threads_of
 from clutchwork.sweeps.result import unit_of
 
@@ -235,29 +235,30 @@ def differentiable(
     end, chosen = merged(system.settings, given, options)
     plain = chosen.changed({"dt": None, "times": None})
     refuse_endless(system.inputs, plain.t_start, end, plain.max_steps)
-    return made(system, of, by, end, plain, threads, side)
+    return made("differentiable", system, of, by, end, plain, threads, side)
 
 
 def made(
-    system: System, of: Any, by: Any, t_end: float, options: Options, threads: int | None, side: Any = None
+    call: str, system: System, of: Any, by: Any, t_end: float, options: Options, threads: int | None, side: Any = None
 ) -> Differentiable:
-    """The function for the requested outputs."""
+    """The function for the requested outputs; call, what was called, as the head of what is wrong with it."""
     if side is not None and side not in SIDES:
-        raise UseError("gradient", [f"side is {quote(side)}: give 'left' or 'right', or leave it out"])
+        raise UseError(call, [f"side is {quote(side)}: give 'left' or 'right', or leave it out"])
     if options.method == "fixed":
-        raise UseError("gradient", ['method is "fixed": derivatives follow the motion between events; leave it out'])
+        raise UseError(call, ['method is "fixed": derivatives follow the motion between events; leave it out'])
     try:
         outputs = asked(of)
         _refuse(system, outputs)
         chosen = parameters(system, by)
         CoreOutputs.of(system, options, outputs, t_end)
+        _refuse_words(system, options, outputs)
     except UseError as error:
         # outputs are those of a sweep, and say so
-        raise UseError("gradient", error.problems) from None
+        raise UseError(call, error.problems) from None
     known = channels(system, options.angles, options.work)
     labels = [(label, unit_of(one, known)) for name, one in outputs.items() for label in _labels(name, one)]
     names, units = zip(*labels, strict=True)
-    task = GradientTask(system, outputs, chosen, t_end, options, threads_of(threads, "gradient"), names, side)
+    task = GradientTask(system, outputs, chosen, t_end, options, threads_of(threads, call), names, side)
     by_units = tuple(one.unit for one in chosen)
     return Differentiable(task, Exact(task), names, tuple(one.name for one in chosen), units, by_units)
 
@@ -267,6 +268,19 @@ def _labels(name: str, one: Output) -> list[str]:
     if not isinstance(one, AtTimes) or (len(one.times) == 1 and name != one.name):
         return [name]
     return [f"{name} {time:.12g} s" for time in one.times]
+
+
+def _refuse_words(system: System, options: Options, outputs: Mapping[str, Output]) -> None:
+    """Signals that are words, whose names are there."""
+    known = channels(system, options.angles, options.work)
+    signals = (one.signal for one in outputs.values() if isinstance(one, AtEnd | AtTimes))
+    words = [name for name in dict.fromkeys(signals) if not known[name].unit]
+    if words:
+        remedy = "take a signal that is a number, or when it changes, such as cw.lock({!r})"
+        told = [
+            f"{name} is a word, which has no derivative; {remedy.format(name.rpartition('.')[0])}" for name in words
+        ]
+        raise UseError("gradient", told)
 
 
 def _refuse(system: System, outputs: Mapping[str, Output]) -> None:
