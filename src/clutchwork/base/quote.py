@@ -54,7 +54,7 @@ def measured(value: float, unit: str) -> str:
 
 
 def apart(value: float, other: float) -> str:
-    """A number with as many digits as tell it from another one, at least six."""
+    """A number with at least six digits, and enough to differ from another one."""
     digits = (count for count in range(6, 17) if f"{value:.{count}g}" != f"{other:.{count}g}")
     return f"{value:.{next(digits, 17)}g}"
 

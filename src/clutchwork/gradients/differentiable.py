@@ -235,11 +235,19 @@ def differentiable(
     end, chosen = merged(system.settings, given, options)
     plain = chosen.changed({"dt": None, "times": None})
     refuse_endless(system.inputs, plain.t_start, end, plain.max_steps)
-    return made("differentiable", system, of, by, end, plain, threads, side)
+    return made(system, of, by, end, plain, threads, side, call="differentiable")
 
 
 def made(
-    call: str, system: System, of: Any, by: Any, t_end: float, options: Options, threads: int | None, side: Any = None
+    system: System,
+    of: Any,
+    by: Any,
+    t_end: float,
+    options: Options,
+    threads: int | None,
+    side: Any = None,
+    *,
+    call: str = "gradient",
 ) -> Differentiable:
     """The function for the requested outputs; call, what was called, as the head of what is wrong with it."""
     if side is not None and side not in SIDES:

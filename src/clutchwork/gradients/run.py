@@ -20,4 +20,4 @@ def gradient_of(run: Trajectory, of: Any, by: Any, side: Any) -> Gradient:
     if not run.finished:
         raise NoGradient([f"the run did not reach its end: {run.message}"])
     plain = run.options.changed({"dt": None, "times": None})
-    return made("gradient", run.system, of, by, run.t_end, plain, 1, side).gradient()
+    return made(run.system, of, by, run.t_end, plain, 1, side).gradient()
