@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping
 from typing import TYPE_CHECKING, Any
 
-from clutchwork.base import UnknownName, UseError, listed, quote
+from clutchwork.base import UnknownName, UseError, listed, near, quote
 from clutchwork.base.errors import expect, nearest
 from clutchwork.gearbox.gearbox import Gearbox
 from clutchwork.results.gears import table_of
@@ -39,7 +39,8 @@ def refuse_prefix(call: str, system: System, box: Gearbox, prefix: str) -> None:
     inner = f".{box.input}"
     known = [node.name.removesuffix(inner) for node in system.nodes if node.name.endswith(inner)]
     if prefix not in known:
-        remedy = "; add one to the driveline" if not known else f"; give prefix={nearest(prefix, known) or known[0]!r}"
+        one = nearest(prefix, known) or next(iter(known), "")
+        remedy = near(prefix, known, f"give prefix={one!r}" if known else "add one to the driveline")
         raise UseError(call, [f"{quote(prefix)} is not a Transmission of {quote(box.name)}{remedy}"])
 
 
