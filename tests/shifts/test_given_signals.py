@@ -89,7 +89,7 @@ def test_a_prefix_that_names_no_gearbox_is_told_by_its_keyword(run: cw.Trajector
     two = model("front", "rear").simulate(0.1)
     with pytest.raises(KeyError, match="no gearbox is named; gearboxes are front, rear; give one as prefix="):
         cw.shifts.qualities(two, BOX)
-    with pytest.raises(cw.UseError, match="'gearbox' is not a Transmission of 'zf-8hp70'; give prefix='box'"):
+    with pytest.raises(cw.UseError, match=r"'gearbox' is not a Transmission of .*give prefix='box'"):
         cw.shifts.plant_of(model("box"), BOX)
     control = cw.shifts.ShiftController(BOX, cw.shifts.plant_of(model("box"), BOX, "box"), gear="3")
     with pytest.raises(cw.UseError, match=r"drive: 1 problem\n.*'gearbox' is not a Transmission .*give prefix='box'"):

@@ -10,7 +10,6 @@ from clutchwork.base.arrays import Array
 from clutchwork.results.recorded import Recorded
 from clutchwork.shifts.detect import Shift
 
-
 # of the largest torque: a freewheel that lets go has some on either side
 ROUND_OFF = 1e-9
 
