@@ -100,8 +100,20 @@ def test_numbers_that_would_look_alike_have_more_digits() -> None:
     d.add(cw.FluidCoupling("fc", base=pump, follower=turbine, **curve))
     with pytest.raises(cw.ModelError, match=r"speed_ratio ends at 0\.9999999, must end at 1"):
         d.simulate(1.0)
-    assert measured(0.5, "1") == "0.5"
-    assert measured(0.5, "Pa") == "0.5 Pa"
+    assert [measured(0.5, unit) for unit in ("1", "", "Pa")] == ["0.5", "0.5", "0.5 Pa"]
+    assert (measured(1.0000001, "s", 1.0), measured(2.0, "s", 2.0)) == ("1.0000001 s", "2 s")
+
+
+def test_numbers_that_do_not_rise_differ_and_have_no_unit_of_one() -> None:
+    torque = cw.Table([(0.0, 0.0), (1.0, 1.0), (0.9999999, 2.0)])
+    with pytest.raises(cw.ModelError, match=r"pressure\.points, point 3 = 0\.9999999 s: comes after 1 s;"):
+        _driveline(pressure=torque).simulate(1.0)
+    d = cw.Driveline()
+    pump, turbine = d.shaft("pump", inertia=0.2), d.shaft("turbine", inertia=0.2)
+    curve = {"capacity": (1e-3, 5e-4, 0.0, 0.0), "density": 850.0, "diameter": 0.3}
+    d.add(cw.FluidCoupling("fc", base=pump, follower=turbine, speed_ratio=(0.0, 0.5, 0.4, 1.0), **curve))
+    with pytest.raises(cw.ModelError, match=r"speed_ratio, number 3 = 0\.4: comes after 0\.5;"):
+        d.simulate(1.0)
 
 
 def test_names_that_are_given_apart_want_a_list() -> None:
