@@ -125,13 +125,9 @@ def list_problems(value: Any, spec: Spec, at: At) -> Iterator[Problem]:
         place = At(at.path, f"{at.quantity}, number {number}", at.unit, units=at.units)
         found = list(number_problems(item, spec, place))
         if not found and spec.rising == "strictly" and before is not None and float(item) <= before:
-            message = (
-                f"comes after {measured(before, at.unit, float(item))}" if float(item) < before else "appears twice"
-            )
-            given, remedy = (
-                measured(float(item), at.unit, before),
-                "sort the numbers; each must be above the one before",
-            )
+            given, last = measured(float(item), at.unit, before), measured(before, at.unit, float(item))
+            message = f"comes after {last}" if float(item) < before else "appears twice"
+            remedy = "sort the numbers; each must be above the one before"
             found = [place.problem(message, value=given, remedy=remedy)]
         if found:
             yield from found
