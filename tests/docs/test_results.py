@@ -80,3 +80,18 @@ def test_rows_of_an_export() -> None:
     """The parts of an output row, by the name that the header of an exported model gives them."""
     rows = {code(row[0])[0] for row in table(page("guide/export.md"), "part of a row")}
     assert rows == {name for name, _ in ROW}
+
+
+def test_a_slip_acceleration_is_that_before_a_lock_up_and_after_a_break_away() -> None:
+    """100 rad/s of slip that 50 N m stop between 0.2 and 0.8 kg m2, then 80 N m that pull it apart again at 2 s."""
+    d = cw.Driveline()
+    engine, load = d.shaft("engine", inertia=0.2, speed=100.0), d.shaft("load", inertia=0.8)
+    lining = cw.Coulomb(static=0.1, kinetic=0.1)
+    d.add(cw.Clutch("c1", base=engine, follower=load, friction=lining, gain=1e-3, normal_force=5e5))
+    d.add(cw.Torque("pull", shaft=load, torque=cw.Table([(0.0, 0.0), (2.0, 0.0), (2.0, 400.0)])))
+    lock, away = d.simulate(3.0).events
+    assert abs(lock.slip_acceleration - 50.0 * (1.0 / 0.2 + 1.0 / 0.8)) < 1e-6
+    assert abs(away.slip_acceleration - (350.0 / 0.8 - 50.0 / 0.2)) < 1e-6
+    (row,) = [row for row in table(PAGE, "field") if "slip_acceleration" in row[0]]
+    assert "before the event where the contact is `locked` after it" in row[1]
+    assert "else after the event" in row[1]

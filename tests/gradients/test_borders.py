@@ -224,7 +224,7 @@ def test_a_wheel_that_rests_at_a_point_of_its_table_has_a_side_for_each_way_that
         function = cw.differentiable(d, 0.2, of="b.speed", by="c.speed_ratio.values[1]", side=side)
         expected = (function(function.x0 + way) - function(function.x0)) / way
         assert function.gradient().matrix[0, 0] == pytest.approx(expected[0], rel=1e-3, abs=1e-9)
-    with pytest.raises(cw.ClutchworkError, match="at a border of its table|from one piece to another"):
+    with pytest.raises(cw.ClutchworkError, match=r"at a border of its table|from one piece to another"):
         cw.differentiable(d, 0.2, of="b.speed", by="c.speed_ratio.values[1]").gradient()
 
 
@@ -239,7 +239,7 @@ def test_what_rests_at_a_point_of_a_table_does_so_to_round_off(seed: int) -> Non
     d.add(cw.Gear("g1", input=b, output=c, ratio=1.0 / first))
     d.add(cw.Gear("g2", input=c, output=a, ratio=first / 0.3))
     d.add(cw.FluidCoupling("f", base=a, follower=b, speed_ratio=(0.0, 0.3, 1.0), capacity=(3e-4, 2e-4, 0.0)))
-    with pytest.raises(cw.ClutchworkError, match="at a border of its table|from one piece to another"):
+    with pytest.raises(cw.ClutchworkError, match=r"at a border of its table|from one piece to another"):
         cw.differentiable(d, 0.1, of="f.heat", by="f.speed_ratio.values[2]").gradient()
 
 
@@ -258,7 +258,7 @@ def test_a_fan_that_turns_at_a_point_of_its_table_has_a_side_for_each_way() -> N
         function = cw.differentiable(model, 1.0, of="hot.temperature", by="a.speed", side=side)
         expected = (function(function.x0 + way) - function(function.x0)) / way
         assert function.gradient().matrix[0, 0] == pytest.approx(expected[0], rel=1e-3)
-    with pytest.raises(cw.ClutchworkError, match="one piece to another|border of its table"):
+    with pytest.raises(cw.ClutchworkError, match=r"one piece to another|border of its table"):
         cw.differentiable(model, 1.0, of="hot.temperature", by="a.speed").gradient()
 
 

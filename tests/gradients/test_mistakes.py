@@ -29,6 +29,21 @@ WRONG = {
     "rms jerk": ({"of": cw.rms_jerk("load"), "by": BY}, "is for calibrate alone; take cw.jerk or cw.squared_jerk"),
     "threads": ({"of": "load.speed", "by": BY, "threads": 0}, "threads is 0"),
     "entry": ({"of": "load.speed", "by": "c1.pressure.values[9]"}, "entries are counted from 1"),
+    "word": (
+        {"of": "c1.state", "by": BY},
+        "c1.state is a word, which has no derivative; take a signal that is a number",
+    ),
+    "word at": ({"of": cw.at("c1.state", 0.5), "by": BY}, "or when it changes, such as cw.lock('c1')"),
+    "speed": (
+        {"of": cw.jerk("load.speed"), "by": BY},
+        "'load.speed' is a signal; give its shaft or mass: cw.jerk('load')",
+    ),
+    "squared": ({"of": cw.squared_jerk("load.speed"), "by": BY}, "give its shaft or mass: cw.squared_jerk('load')"),
+    "shaft": ({"of": cw.jerk("laod"), "by": BY}, "no shaft or mass 'laod'; did you mean 'load'?"),
+    "no shaft": ({"of": cw.jerk("x"), "by": BY}, "no shaft or mass 'x'; they are engine, load"),
+    "jerk": ({"of": "load.jerk", "by": BY}, "no signal 'load.jerk'; a jerk is an output of its own: cw.jerk('load')"),
+    "jerk()": ({"of": "jerk(load)", "by": BY}, "a jerk is an output of its own: cw.jerk('load')"),
+    "bracket": ({"of": "load.speed", "by": "c1.pressure[2]"}, "did you mean 'c1.pressure.values[2]'?"),
     "range": ({"of": "load.speed", "by": "c1.pressure.values[2:4]"}, "counted from 1, [1:3] are all"),
 }
 
@@ -38,7 +53,7 @@ def test_a_function_that_cannot_be(name: str) -> None:
     given, text = WRONG[name]
     with pytest.raises(cw.UseError) as caught:
         cw.differentiable(launch(), 2.0, **given)  # type: ignore[arg-type]
-    assert str(caught.value).startswith("gradient: 1 problem\n")
+    assert str(caught.value).startswith("differentiable: 1 problem\n")
     assert text in str(caught.value)
 
 
@@ -60,6 +75,28 @@ def test_a_wrong_number_hides_no_wrong_output() -> None:
     said = "\n".join(caught.value.problems)
     for text in ("did you mean 'load.speed'", "no contact 'c2'", "did you mean 'c1.gain'"):
         assert text in said
+
+
+def test_the_head_of_a_mistake_is_what_was_called() -> None:
+    run = launch().simulate(2.0)
+    with pytest.raises(cw.UseError, match=r"^gradient: 1 problem\n  c1.state is a word"):
+        run.gradient(of="c1.state", by=BY)
+    with pytest.raises(cw.UseError, match=r"c1.state is a word, which has no derivative"):
+        cw.calibrate(launch(), 2.0, free={BY: (4e-4, 6e-4)}, minimise="c1.state")
+
+
+def test_a_jerk_of_a_calibration_is_asked_for_by_the_shaft() -> None:
+    with pytest.raises(cw.UseError, match=r"'load.speed' is a signal; give its shaft or mass: cw.jerk\('load'\)"):
+        cw.calibrate(launch(), 2.0, free={BY: (4e-4, 6e-4)}, minimise=cw.jerk("load.speed"))
+
+
+def test_a_contact_that_is_locked_all_the_while_is_said_to_be() -> None:
+    d = launch()
+    rests = d.assemble().changed({"engine.speed": 0.0, "c1.pressure": 1e5})
+    with pytest.raises(cw.NoGradient, match=r"lock\(c1\) does not happen: the contact is locked from the start to 2 s"):
+        cw.differentiable(rests, 2.0, of=cw.lock("c1"), by=BY).gradient()
+    with pytest.raises(cw.NoGradient, match=r"lock\(c1, 2\) does not happen before 2 s"):
+        cw.differentiable(d, 2.0, of=cw.lock("c1", 2), by=BY).gradient()
 
 
 def test_a_driveline_without_contacts_says_so() -> None:

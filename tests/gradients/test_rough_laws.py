@@ -41,7 +41,7 @@ def test_the_same_law_has_derivatives_where_its_slip_keeps_its_sign() -> None:
 
 
 @pytest.mark.parametrize(("order", "is_noted"), [(0.4, True), (1.0, False), (20.0, False)])
-def test_bristles_as_steep_as_one_likes_are_noted(order: float, is_noted: bool) -> None:  # noqa: FBT001
+def test_bristles_as_steep_as_one_likes_are_noted(order: float, is_noted: bool) -> None:
     law = cw.Leuven(**CURVE, elements=((2e-5, 0.4), (1e-4, 0.6)), order=order)
     gradient = cw.differentiable(driven(law), 0.1, of="s.speed", by="t.torque").gradient()
     assert any("is below 1" in note for note in gradient.notes) == is_noted

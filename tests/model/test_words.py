@@ -4,12 +4,14 @@ from __future__ import annotations
 
 from dataclasses import replace
 from pathlib import Path
+from typing import Any
 
 import pytest
 
 import clutchwork as cw
 from clutchwork.base.errors import UnknownName
 from clutchwork.base.plural import counted
+from clutchwork.base.quote import measured
 from clutchwork.declare.schema import REGISTRY, Role, specs
 from clutchwork.model.components import component_problems
 from clutchwork.results.energy import EnergyBalance
@@ -67,6 +69,56 @@ def test_units_answer_a_misspelt_signal_with_near_ones() -> None:
 )
 def test_one_is_singular(count: int, plural: str, said: str) -> None:
     assert counted(count, plural) == said
+
+
+@pytest.mark.parametrize(
+    ("given", "said"),
+    [
+        ({"pressure": "0.2 mpa"}, "'mpa'; did you mean 'MPa'?"),
+        ({"pressure": "2 mps"}, "'mps'; did you mean 'psi'?"),
+        ({"speed": "1000 U/mn"}, "'mn'; did you mean 'min'?"),
+        ({"inertia": "0.2 kgm^2"}, "'kgm^2'; did you mean 'kg m2'?"),
+        ({"inertia": "0.2 kgm2"}, "'kgm2'; did you mean 'kg m2'?"),
+        ({"inertia": -0.2}, "give zero or a positive value (moment of inertia, zero only where no torque on it jumps)"),
+    ],
+)
+def test_a_remedy_is_one_for_the_quantity(given: dict[str, Any], said: str) -> None:
+    d = cw.Driveline()
+    engine = d.shaft("engine", inertia=given.get("inertia", 0.2), speed=given.get("speed", 100.0))
+    lining, pressure = cw.Coulomb(static=0.1, kinetic=0.1), given.get("pressure", 1e5)
+    d.add(cw.Brake("b1", shaft=engine, friction=lining, gain=1e-3, pressure=pressure))
+    with pytest.raises(cw.ModelError) as caught:
+        d.simulate(1.0)
+    assert said in str(caught.value)
+
+
+def test_numbers_that_would_look_alike_have_more_digits() -> None:
+    ratios = (0.0, 0.5, 0.9999999)
+    d = cw.Driveline()
+    pump, turbine = d.shaft("pump", inertia=0.2), d.shaft("turbine", inertia=0.2)
+    curve = {"speed_ratio": ratios, "capacity": (1e-3, 5e-4, 0.0), "density": 850.0, "diameter": 0.3}
+    d.add(cw.FluidCoupling("fc", base=pump, follower=turbine, **curve))
+    with pytest.raises(cw.ModelError, match=r"speed_ratio ends at 0\.9999999, must end at 1"):
+        d.simulate(1.0)
+    assert [measured(0.5, unit) for unit in ("1", "", "Pa")] == ["0.5", "0.5", "0.5 Pa"]
+    assert (measured(1.0000001, "s", 1.0), measured(2.0, "s", 2.0)) == ("1.0000001 s", "2 s")
+
+
+def test_numbers_that_do_not_rise_differ_and_have_no_unit_of_one() -> None:
+    torque = cw.Table([(0.0, 0.0), (1.0, 1.0), (0.9999999, 2.0)])
+    with pytest.raises(cw.ModelError, match=r"pressure\.points, point 3 = 0\.9999999 s: comes after 1 s;"):
+        _driveline(pressure=torque).simulate(1.0)
+    d = cw.Driveline()
+    pump, turbine = d.shaft("pump", inertia=0.2), d.shaft("turbine", inertia=0.2)
+    curve = {"capacity": (1e-3, 5e-4, 0.0, 0.0), "density": 850.0, "diameter": 0.3}
+    d.add(cw.FluidCoupling("fc", base=pump, follower=turbine, speed_ratio=(0.0, 0.5, 0.4, 1.0), **curve))
+    with pytest.raises(cw.ModelError, match=r"speed_ratio, number 3 = 0\.4: comes after 0\.5;"):
+        d.simulate(1.0)
+
+
+def test_names_that_are_given_apart_want_a_list() -> None:
+    with pytest.raises(cw.UseError, match=r"names are given apart; write a list of all, such as \['F1\.gain', 'b'\]"):
+        cw.together("a", "b", factor=(0.9, 1.1))  # type: ignore[misc]
 
 
 def test_no_table_shows_minus_zero() -> None:

@@ -210,7 +210,7 @@ def test_a_ratio_that_jumps_from_zero_beside_what_another_holds_jams():
 
 
 def test_a_ratio_that_leaves_zero_where_two_others_hold_jams_at_once():
-    """A rack and a sprocket of another radius hold the mass: not even round-off moves it, with torques of its inverse."""
+    """A rack and a sprocket of another radius hold the mass: round-off does not move it, with torques of its inverse."""
     d = cw.Driveline("rack")
     m, pinion, wheel, motor = d.mass("m", mass=0.366), d.shaft("pinion"), d.shaft("wheel"), d.shaft("motor")
     d.add(cw.RackPinion("rack", shaft=pinion, mass=m, radius=0.133))
@@ -222,7 +222,8 @@ def test_a_ratio_that_leaves_zero_where_two_others_hold_jams_at_once():
     with pytest.warns(cw.StoppedEarly, match="'gear'"):
         run = d.simulate(0.1)
     assert (run.status, run.time[-1], run["m.speed"][-1]) == ("jammed", 0.05, 0.0)
-    assert not run["gear.torque"].any() and not run["sprocket.torque"].any()
+    assert not run["gear.torque"].any()
+    assert not run["sprocket.torque"].any()
 
 
 def test_a_ratio_that_leaves_zero_beside_the_housing_goes_on_at_rest():

@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
+import clutchwork as cw
 from clutchwork.shifts.comfort import HIGH, LOW, QUALITY, TRANSITION, jerk, low_pass, vibration_dose, weighted
 
 STEP = 1e-3  # s
@@ -85,3 +86,52 @@ def test_ends_go_on_evenly() -> None:
 def test_the_filter_has_no_delay() -> None:
     wave = np.exp(-(((np.arange(3000) - 1500) / 60.0) ** 2))
     assert abs(int(np.argmax(low_pass(wave, STEP, 10.0))) - 1500) <= 1
+
+
+def test_a_window_that_is_no_whole_number_of_steps_is_that_which_was_asked_for() -> None:
+    step, window = 0.03, 0.1
+    time = np.arange(0.0, 6.0, step)
+    speed = np.maximum(time - 3.0, 0.0)
+    found = jerk(speed, step, window=window)
+    assert np.max(found) == pytest.approx(1.0 / window, rel=1e-9)
+    # of the speed that is straight between two steps
+    at = time[:, None] + window * np.array([1.0, 0.0, -1.0])
+    inside = (at.min(axis=1) >= 0.0) & (at.max(axis=1) <= time[-1])
+    whole = np.interp(at, time, speed) @ np.array([1.0, -2.0, 1.0]) / window**2
+    assert found[inside] == pytest.approx(whole[inside], abs=1e-9)
+    # a window of whole steps is not touched by their round-off
+    assert np.max(jerk(np.maximum(time - 3.0, 0.0), "30 ms", window="90 ms")) == pytest.approx(1.0 / 0.09, rel=1e-9)
+
+
+STEADY = np.arange(100.0)
+REFUSED = {
+    "no step": (lambda: jerk(STEADY, 0.0), "step is 0.0: must be a time > 0 s"),
+    "back": (lambda: vibration_dose(STEADY, -1e-3), "step is -0.001: must be a time > 0 s"),
+    "unit": (lambda: jerk(STEADY, "1 m"), "step is '1 m': must be a time > 0 s"),
+    "no window": (lambda: jerk(STEADY, 1e-3, window=0.0), "window is 0.0: must be a time > 0 s"),
+    "short": (
+        lambda: jerk(STEADY, 0.03),
+        "window = 0.05 s: must be at least two steps, 0.06 s, and at most",
+    ),
+    "long": (lambda: jerk(STEADY, 1e-3, window=1.0), "at most the record, 0.1 s; sample more densely, or give another"),
+    "nothing": (lambda: jerk([], 1e-3), "speed is []: must be two numbers or more at equal steps"),
+    "one": (lambda: vibration_dose([1.0], 1e-3), "acceleration is [1.0]: must be two numbers or more"),
+    "table": (lambda: jerk(np.zeros((3, 3)), 1e-3), "must be two numbers or more at equal steps"),
+    "words": (lambda: vibration_dose(["locked", "forward"], 1e-3), "must be two numbers or more at equal steps"),
+    "nan": (lambda: vibration_dose([0.0, 1.0, float("nan")], 1e-3), "acceleration[2] is nan: must be finite"),
+    "inf": (lambda: jerk([*STEADY, float("inf")], 1e-3), "speed[100] is inf: must be finite"),
+}
+
+
+@pytest.mark.parametrize("name", REFUSED)
+def test_what_is_no_record_is_refused(name: str) -> None:
+    call, said = REFUSED[name]
+    with pytest.raises(cw.UseError) as caught:
+        call()
+    assert said in str(caught.value)
+
+
+def test_lists_and_steps_with_units_are_read() -> None:
+    values = np.sin(0.1 * STEADY)
+    assert np.array_equal(jerk(values.tolist(), "10 ms"), jerk(values, 0.01))
+    assert vibration_dose(values.tolist(), "10 ms") == vibration_dose(values, 0.01)

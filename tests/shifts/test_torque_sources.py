@@ -169,7 +169,7 @@ def test_what_is_given_by_mistake_is_named() -> None:
     assert drive(sim, control, 0.1, throttle=0.3, sensed=sensed)["combustion.throttle"][-1] == 0.3
     wrong = {
         "box is 'zf-8hp70': give a cw.Gearbox": lambda: cw.shifts.plant_of(model, "zf-8hp70"),
-        "'gbx' is not a Transmission of 'zf-8hp70'; .*there is gearbox": lambda: cw.shifts.plant_of(model, BOX, "gbx"),
+        "'gbx' is not a Transmission of .*give prefix='gearbox'": lambda: cw.shifts.plant_of(model, BOX, "gbx"),
         "'gearbx' is not .*did you mean 'gearbox'": lambda: cw.shifts.plant_of(model, BOX, "gearbx"),
         "cw.shifts.plant_of: 1 problem\n  box is missing": lambda: cw.shifts.plant_of(model),
         "cw.shifts.ShiftController\\(\\): 1 problem\n  plant is missing": lambda: cw.shifts.ShiftController(BOX),

@@ -48,6 +48,21 @@ def shortened(text: str, longest: int = 4 * LONGEST) -> str:
     return f"{text[:half]}...{text[-half:]}"
 
 
+def apart(value: float, other: float) -> str:
+    """A number with at least six digits, and enough to differ from another one."""
+    digits = (count for count in range(6, 17) if f"{value:.{count}g}" != f"{other:.{count}g}")
+    return f"{value:.{next(digits, 6)}g}"
+
+
+def measured(value: float, unit: str, other: float | None = None) -> str:
+    """A number with its unit, which is left out where it is 1.
+
+    Parameters: other, a number that it must not look like.
+    """
+    number = f"{value:g}" if other is None else apart(value, other)
+    return number if unit in ("", "1") else f"{number} {unit}"
+
+
 def printable(text: str) -> str:
     """A string whose control characters, and others that cannot be printed, are written as escapes."""
     if text.isprintable():

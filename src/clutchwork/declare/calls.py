@@ -164,6 +164,8 @@ def _problems(
 def _spare(spare: tuple[Any, ...], by_place: list[str], known: list[str]) -> str:
     if by_place == ["points"] and hasattr(spare[0], "__len__"):
         return "times and values are given apart; write pairs: cw.Table([(0, 0), (1, 2e5)])"
+    if by_place == ["names"] and isinstance(spare[0], str):
+        return f"names are given apart; write a list of all, such as ['F1.gain', {quote(spare[0])}]"
     listed, verb = " and ".join(by_place), "is" if len(by_place) == 1 else "are"
     first = f"only {listed} {verb} positional" if by_place else "none can be given"
     example = ", ".join(f"{name}=..." for name in known[: len(spare)])

@@ -11,7 +11,7 @@ from typing import Any
 from clutchwork.base import ClutchworkError, advised, near, quote
 from clutchwork.base.quote import shortened
 from clutchwork.declare import pints, units
-from clutchwork.declare.unit_table import example_of
+from clutchwork.declare.unit_table import example_of, fitting
 from clutchwork.declare.unit_table import unit_table as unit_table
 from clutchwork.declare.units import KELVIN, Scale
 
@@ -129,14 +129,25 @@ def scale_to_si(
         word = str(error)
         if units.other_zero(word):
             raise _refused(value, word, wanted, difference and units.powers_of(unit) == KELVIN) from None
-        # a product without its space
-        glued = [name for name in (unit, *others) if name.replace(" ", "") == word]
-        meant = near(word, glued or [*units.known(), "degC", "degF"])
+        meant = _meant(word, (unit, *others))
         raise QuantityError(f"has the unknown unit {quote(word)}{meant}", value, f"give it in {wanted}") from None
     if found is None:
         example = "" if unit == "1" else f", such as {example_of(unit)!r}"
         raise QuantityError("has a unit that does not fit", value, f"give it in {wanted}{example}")
     return found
+
+
+def _meant(word: str, wanted: tuple[str, ...]) -> str:
+    """`; did you mean ...?` where an unknown unit is close to a known one, those that fit first."""
+    # a product without its space, or with a sign for its power
+    glued = [name for name in wanted if name.replace(" ", "") == word.replace("^", "")]
+    if glued:
+        return f"; did you mean {glued[0]!r}?"
+    every = [*units.known(), "degC", "degF"]
+    fits = [name for unit in wanted for name in fitting(unit) if name in every]
+    # MPa for mpa: letters of another size
+    same = [name for name in fits if name.casefold() == word.casefold()]
+    return f"; did you mean {same[0]!r}?" if same else near(word, fits) or near(word, every)
 
 
 def _wanted(unit: str, others: tuple[str, ...]) -> str:

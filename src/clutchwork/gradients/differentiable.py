@@ -29,7 +29,7 @@ from clutchwork.run.control import controllers
 from clutchwork.run.settings import merged, refuse_endless
 from clutchwork.run.simulation import Assembles, model_of
 from clutchwork.sweeps.batch import CoreOutputs
-from clutchwork.sweeps.outputs import Asked, AtTimes, Computed, Output, asked
+from clutchwork.sweeps.outputs import Asked, AtEnd, AtTimes, Computed, Output, asked
 from clutchwork.sweeps.request import threads_of
 from clutchwork.sweeps.result import unit_of
 
@@ -236,20 +236,28 @@ def differentiable(
     end, chosen = merged(system.settings, given, options)
     plain = chosen.changed({"dt": None, "times": None})
     refuse_endless(system.inputs, plain.t_start, end, plain.max_steps)
-    return made(system, of, by, end, plain, threads, side)
+    return made(system, of, by, end, plain, threads, side, call="differentiable")
 
 
 def made(
-    system: System, of: Any, by: Any, t_end: float, options: Options, threads: int | None, side: Any = None
+    system: System,
+    of: Any,
+    by: Any,
+    t_end: float,
+    options: Options,
+    threads: int | None,
+    side: Any = None,
+    *,
+    call: str = "gradient",
 ) -> Differentiable:
-    """The function for the requested outputs."""
+    """The function for the requested outputs; call, what was called, as the head of what is wrong with it."""
     mistakes = Mistakes()
     mistakes.found += _faults(options, side)
-    count = mistakes.caught(lambda: threads_of(threads, "gradient"), 1)
+    count = mistakes.caught(lambda: threads_of(threads, call), 1)
     outputs: dict[str, Output] = mistakes.caught(lambda: asked(of), {})
     mistakes.caught(lambda: refuse_outputs(system, outputs, options, t_end), None)
     chosen: tuple[Tunable, ...] = mistakes.caught(lambda: parameters(system, by), ())
-    mistakes.refuse("gradient")
+    mistakes.refuse(call)
     known = channels(system, options.angles, options.work)
     labels = [(label, unit_of(one, known)) for name, one in outputs.items() for label in _labels(name, one)]
     names, units = zip(*labels, strict=True)
@@ -277,8 +285,17 @@ def refuse_outputs(system: System, outputs: Mapping[str, Output], options: Optio
     """UseError names outputs that are not there, and all that has no derivative, whatever the numbers."""
     mistakes = Mistakes()
     mistakes.caught(lambda: CoreOutputs.of(system, options, outputs, t_end), None)
-    mistakes.found += _without_derivative(system, outputs)
+    mistakes.found += [*_without_derivative(system, outputs), *_words(system, options, outputs)]
     mistakes.refuse("gradient")
+
+
+def _words(system: System, options: Options, outputs: Mapping[str, Output]) -> list[str]:
+    """Signals that are words."""
+    known = channels(system, options.angles, options.work)
+    signals = (one.signal for one in outputs.values() if isinstance(one, AtEnd | AtTimes))
+    words = [name for name in dict.fromkeys(signals) if name in known and not known[name].unit]
+    remedy = "take a signal that is a number, or when it changes, such as cw.lock({!r})"
+    return [f"{name} is a word, which has no derivative; {remedy.format(name.rpartition('.')[0])}" for name in words]
 
 
 def _without_derivative(system: System, outputs: Mapping[str, Output]) -> list[str]:

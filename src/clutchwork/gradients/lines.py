@@ -90,6 +90,8 @@ def _nothing(name: str, one: Measure, t_end: float) -> str:
     """Why a measure has no derivatives; none where it has."""
     if one.is_unseen:
         return f"{name} is reached in motion that settles within a few nanoseconds, {UNSEEN_MOTION}"
+    if one.is_held:
+        return f"{name} does not happen: the contact is locked from the start to {t_end:g} s; let it slip at first"
     if not one.changes:
         return f"{name} does not happen before {t_end:g} s; take one that does, or a later end time"
     if one.unseen > UNSEEN:

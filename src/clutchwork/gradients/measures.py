@@ -48,6 +48,7 @@ class Measure(NamedTuple):
     is_massless: bool = False  # of a shaft whose accelerations are not known well
     unseen: float = 0.0  # share of a squared jerk that is not in the rows of the steps
     is_unseen: bool = False  # an extreme that is not in them
+    is_held: bool = False  # the lock-up of a contact that is locked all the while
 
 
 class Context(NamedTuple):
@@ -106,12 +107,19 @@ def number_of(events: Array, one: When, contacts: tuple[str, ...]) -> int:
 def _when(primal: Primal, one: When, asked: Context) -> Measure:
     number = number_of(primal.events, one, asked.contacts)
     if number < 0:
-        return Measure(float("nan"), (), primal.t_end)
+        return Measure(float("nan"), (), primal.t_end, is_held=_is_held(primal, one, asked.contacts.index(one.contact)))
     into = primal.functional()
     into.add_event(number, 1.0)
     time = float(primal.events[number, AT["time"]])
     # whether one comes before it shows up to the end where they are counted from there
     return Measure(time, (into,), time if one.number > 0 else primal.t_end)
+
+
+def _is_held(primal: Primal, one: When, contact: int) -> bool:
+    """Whether it asks when a contact locks that never changes and is locked at the end."""
+    modes = primal.rows[:, primal.columns["contact_mode"].start + contact]
+    changes = np.any(primal.events[:, AT["contact"]] == contact)
+    return one.kind == "lock" and not changes and bool(np.all(modes[-1:] == LOCKED))
 
 
 def _extreme(primal: Primal, one: Extreme) -> Measure:

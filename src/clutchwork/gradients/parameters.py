@@ -87,6 +87,7 @@ def _meant(model: Model, owners: Owners, name: Any) -> list[Tunable]:
     parts = ENTRY.fullmatch(name) if isinstance(name, str) else None
     table = target(owners, parts[1]) if parts else None
     if parts is None or table is None:
+        _refuse_bracket(owners, name)
         _, (problem,) = targets_of(model, [name])
         raise Unfit(problem)
     found, wanted = list(_entries(table, parts[1], parts[2])), f"{parts[1]}.{parts[2]}{parts[3]}"
@@ -97,6 +98,14 @@ def _meant(model: Model, owners: Owners, name: Any) -> list[Tunable]:
         together = "; points of a jump move under the number of the first one" if parts[2] != "values" else ""
         raise Unfit(f"{name} is not there: entries are counted from 1, {found[0].name} to {found[-1].name}{together}")
     return chosen
+
+
+def _refuse_bracket(owners: Owners, name: Any) -> None:
+    """Refuse the number of an entry without what of the table it counts."""
+    stem, bracket, rest = name.partition("[") if isinstance(name, str) else ("", "", "")
+    aim = target(owners, stem) if bracket else None
+    if aim is not None and ENTRY.fullmatch(meant := f"{stem}.values[{rest}"):
+        raise Unfit(f"{name} is not a number of this driveline; did you mean {meant!r}?")
 
 
 def _refuse_held(model: Model, aim: Target, name: str) -> None:

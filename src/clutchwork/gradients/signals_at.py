@@ -14,6 +14,7 @@ from clutchwork.assembly.provenance import PROBES
 from clutchwork.assembly.wiring import wiring
 from clutchwork.base.classes import dataclass
 from clutchwork.base.errors import ModelError
+from clutchwork.base.quote import measured
 from clutchwork.gradients.finite_differences import ROUND_OFF, Bent, slope
 from clutchwork.gradients.words import Words
 from clutchwork.results.channels import channels
@@ -95,7 +96,7 @@ class SignalsAt:
             try:
                 found = slope(along, here, own, one.compared(own), one.reach, noise).value
             except Bent as bent:
-                raise NoGradient([f"{one.name} = {x[number]:g} {one.unit}: {bent}"]) from None
+                raise NoGradient([f"{one.name} = {measured(x[number], one.unit)}: {bent}"]) from None
             for name, line in zip(made, found.reshape(len(made), -1), strict=True):
                 made[name][:, number] = line
         return made

@@ -31,8 +31,8 @@ from clutchwork.model.thermal import node_kind, thermal_problems
 FIXED = ("port", "thermal", "text", "formula", "function", "named", "elements", "data")
 SIGNALS = ("signal", "alternative")
 MOST_OWN = 6
-# "c1.pressure.values[3]"
-IN_TABLE = re.compile(r"(.+)\.(values|times|arguments)(\[.*\])?")
+# "c1.pressure.values[3]", or without its "values"
+IN_TABLE = re.compile(r"(.+?)(?:\.(?:values|times|arguments))?(?:\[.*\])?")
 WHOLE = "gradients, calibrate and fit take its numbers, a sweep or a change takes whole tables: give them"
 RESULTS = "speeds, torques, slips and the like are results, which follow from the motion"
 # fields of a mass by the names of a shaft

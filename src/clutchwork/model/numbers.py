@@ -9,6 +9,7 @@ from numbers import Real
 from typing import Any, NamedTuple
 
 from clutchwork.base import Problem, listed, quote
+from clutchwork.base.quote import measured
 from clutchwork.declare.quantity import PLAIN, QuantityError, has_unit, in_si, within
 from clutchwork.declare.schema import Spec
 from clutchwork.declare.units import Scale
@@ -124,8 +125,9 @@ def list_problems(value: Any, spec: Spec, at: At) -> Iterator[Problem]:
         place = At(at.path, f"{at.quantity}, number {number}", at.unit, units=at.units)
         found = list(number_problems(item, spec, place))
         if not found and spec.rising == "strictly" and before is not None and float(item) <= before:
-            message = f"comes after {before:g} {at.unit}" if float(item) < before else "appears twice"
-            given, remedy = f"{float(item):g} {at.unit}", "sort the numbers; each must be above the one before"
+            given, last = measured(float(item), at.unit, before), measured(before, at.unit, float(item))
+            message = f"comes after {last}" if float(item) < before else "appears twice"
+            remedy = "sort the numbers; each must be above the one before"
             found = [place.problem(message, value=given, remedy=remedy)]
         if found:
             yield from found
@@ -197,10 +199,10 @@ def _order(before: Any, point: Any, spec: Spec, at: At) -> Iterator[Problem]:
     if before is None:
         return
     (x, y), (x_next, y_next) = ((float(a), float(b)) for a, b in (before, point))
-    given = f"{x_next:g} {spec.unit_x}"
+    given, last = measured(x_next, spec.unit_x, x), measured(x, spec.unit_x, x_next)
     if x_next < x or (x_next == x and spec.rising == "strictly"):
-        message = f"comes after {x:g} {spec.unit_x}" if x_next < x else "appears twice"
+        message = f"comes after {last}" if x_next < x else "appears twice"
         rule = "x must increase" if spec.rising == "strictly" else "x must not fall; two points at one x are a jump"
         yield at.problem(message, value=given, remedy=f"sort the points; {rule}")
     elif x_next > x and not isfinite((y_next - y) / (x_next - x)):
-        yield at.problem(f"is too close to {x:g} {spec.unit_x}", value=given, remedy="remove one of the points")
+        yield at.problem(f"is too close to {last}", value=given, remedy="remove one of the points")

@@ -77,12 +77,12 @@ def _touched(elements: Sequence[Component]) -> list[str]:
 
 NODE_FIELDS = {
     Domain.ROTATION: {
-        "inertia": Spec("param", "kg m2", "moment of inertia", at_least=0.0),
+        "inertia": Spec("param", "kg m2", "moment of inertia, zero only where no torque on it jumps", at_least=0.0),
         "speed": Spec("param", "rad/s", "speed at the start", optional=True),
         "angle": Spec("param", "rad", "angle at the start", optional=True),
     },
     Domain.TRANSLATION: {
-        "mass": Spec("param", "kg", "mass", at_least=0.0),
+        "mass": Spec("param", "kg", "mass, zero only where no force on it jumps", at_least=0.0),
         "speed": Spec("param", "m/s", "speed at the start", optional=True),
         "position": Spec("param", "m", "position at the start", optional=True),
     },

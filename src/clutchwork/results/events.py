@@ -45,7 +45,8 @@ class Event:
     before: str  # forward, backward, locked or open
     after: str
     cause: str  # a word of CAUSES in clutchwork.declare.layout
-    slip_acceleration: float  # rad/s2 after the event, on masses m/s2
+    # rad/s2, on masses m/s2: that with which it came where it is locked afterwards, else that with which it goes on
+    slip_acceleration: float
     torque_before: float  # N m on the follower, on masses N
     torque_after: float  # N m on the follower, on masses N
     energy_before: float  # J, kinetic

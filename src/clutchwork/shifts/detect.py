@@ -12,6 +12,7 @@ from clutchwork.base import dataclass
 from clutchwork.gearbox.gearbox import Gearbox
 from clutchwork.results.recorded import Recorded
 from clutchwork.shifts.gears import InGear, gears_of
+from clutchwork.shifts.given import prefix_of
 from clutchwork.shifts.record import NEUTRAL
 
 # torque that counts as none, as a share of the largest one
@@ -54,8 +55,12 @@ class Shift:
         return self.end - self.begin
 
 
-def shifts_of(run: Recorded, box: Gearbox, prefix: str = "gearbox") -> list[Shift]:
-    """Every shift from one gear to another that a run shows, and from neutral into a gear; not those into neutral."""
+def shifts_of(run: Recorded, box: Gearbox, prefix: str = "") -> list[Shift]:
+    """Every shift from one gear to another that a run shows, and from neutral into a gear; not those into neutral.
+
+    Parameters: prefix, name of the Transmission, which may be left out where it is the only one.
+    """
+    prefix = prefix_of(run, box, prefix)
     gears = gears_of(run, box, prefix)
     made = []
     for number, (old, new) in enumerate(pairwise(gears)):

@@ -12,7 +12,9 @@ from numpy.typing import NDArray
 from clutchwork.base import dataclass
 from clutchwork.base.arrays import Array
 from clutchwork.shifts.comfort import jerk
+from clutchwork.shifts.given import prefix_of, refuse_unfit
 from clutchwork.shifts.record import NEUTRAL, Finding
+from clutchwork.shifts.tie_up import opposing
 
 if TYPE_CHECKING:
     from clutchwork.gearbox.gearbox import Gearbox
@@ -38,6 +40,7 @@ class _Seen:
     time: Array
     part: Any
     torque: Array | None
+    unit: str  # of the torque
 
     def inside(self, begin: float, end: float) -> NDArray[np.bool_]:
         found: NDArray[np.bool_] = (self.time >= begin - 1e-9) & (self.time <= end + 1e-9)
@@ -45,7 +48,7 @@ class _Seen:
 
 
 def diagnose(
-    run: Any, box: Gearbox, one: ShiftQuality, prefix: str = "gearbox", *, torque: str = "", acceleration: str = ""
+    run: Any, box: Gearbox, one: ShiftQuality, prefix: str = "", *, torque: str = "", acceleration: str = ""
 ) -> tuple[Finding, ...]:
     """Why a shift was harsh: the cause of its largest jerk first.
 
@@ -54,12 +57,22 @@ def diagnose(
 
     Parameters: run, one, a shift of it; torque and acceleration, signals as of `cw.shifts.qualities`.
     """
+    prefix = prefix_of(run, box, prefix)
+    refuse_unfit("cw.shifts.diagnose", run, torque, acceleration)
     shift = one.shift
     first, last = max(float(run.time[0]), shift.begin - 0.4), min(float(run.time[-1]), shift.end + 0.6)
     time = np.arange(first, last, STEP)
     part = run.at(time)
-    seen = _Seen(box, prefix, one, time, part, np.asarray(part[torque]) if torque else None)
-    found = [*_runs_away(seen), *_ties_up(seen), *_let_go(run, seen), *_locks(seen), *_rings(seen)]
+    seen = _Seen(
+        box,
+        prefix,
+        one,
+        time,
+        part,
+        np.asarray(part[torque]) if torque else None,
+        run.units[torque] if torque else "N m",
+    )
+    found = [*_runs_away(seen), *_ties_up(run, seen), *_let_go(run, seen), *_locks(seen), *_rings(seen)]
     speed = acceleration.removesuffix("acceleration") + "speed"
     if not acceleration or speed not in run:
         return tuple(sorted(found, key=lambda finding: finding.time))
@@ -99,18 +112,16 @@ def _runs_away(seen: _Seen) -> Iterator[Finding]:
             yield Finding(at, cause, cure)
 
 
-def _ties_up(seen: _Seen) -> Iterator[Finding]:
+def _ties_up(run: Any, seen: _Seen) -> Iterator[Finding]:
     """An element that opens works against the one that closes."""
     shift = seen.one.shift
-    inside, held = seen.inside(shift.begin, shift.end), seen.time < shift.begin
     for name in shift.opens:
         values = np.asarray(seen.part[f"{seen.prefix}.{name}.torque"])
-        usual = float(np.mean(values[held])) if np.any(held) else 0.0
-        against = np.where(inside, -np.sign(usual) * values, 0.0)
-        worst = int(np.argmax(against))
-        if against[worst] > max(AGAINST * float(np.max(np.abs(values))), 10.0):
+        time, against = opposing(run, shift, f"{seen.prefix}.{name}", seen.time, values)
+        worst = int(np.argmax(against)) if len(against) else -1
+        if worst >= 0 and against[worst] > max(AGAINST * float(np.max(np.abs(values))), 10.0):
             cause = f"{name} held {against[worst]:.0f} N m against {'+'.join(shift.closes)}: a tie-up"
-            yield Finding(float(seen.time[worst]), cause, "fill_time down, margin down, torque_time up")
+            yield Finding(float(time[worst]), cause, "fill_time down, margin down, torque_time up")
 
 
 def _locks(seen: _Seen) -> Iterator[Finding]:
@@ -126,7 +137,7 @@ def _locks(seen: _Seen) -> Iterator[Finding]:
     level = float(np.max(np.abs(torque)))
     if step > STEPS * level:
         up = abs(seen.box.ratios.get(shift.before, np.inf)) > abs(seen.box.ratios[shift.after])
-        cause = f"{'+'.join(shift.closes)} locked with a step of {step:.0f} N m at the output"
+        cause = f"{'+'.join(shift.closes)} locked with a step of {step:.0f} {seen.unit} at the output"
         yield Finding(at, cause, "inertia_time up, reduction up" if up else "inertia_time up, stretch up")
 
 
@@ -160,6 +171,6 @@ def _rings(seen: _Seen) -> Iterator[Finding]:
     if size > RINGS * float(np.max(np.abs(torque))):
         crossings = seen.time[rest][:-1][np.diff(np.sign(trend)) != 0.0]
         frequency = 0.5 * (len(crossings) - 1) / max(float(np.ptp(crossings)), STEP) if len(crossings) else 0.0
-        cause = f"the drive shaft rings with {size:.0f} N m at {frequency:.1f} Hz behind the shift"
+        cause = f"the drive shaft rings with {size:.0f} {seen.unit} at {frequency:.1f} Hz behind the shift"
         cure = f"inertia_time near a multiple of {1.0 / frequency:.2g} s, end_time up" if frequency else "end_time up"
         yield Finding(float(end + 0.1), cause, cure)

@@ -12,6 +12,7 @@ from clutchwork.base.errors import expect
 from clutchwork.declare.calls import explained
 from clutchwork.run.trajectory import Trajectory
 from clutchwork.shifts.controller import ShiftController
+from clutchwork.shifts.given import refuse_prefix
 from clutchwork.shifts.hybrid import HybridController
 from clutchwork.shifts.record import Measured
 from clutchwork.shifts.torque_sources import Source, TorqueShare
@@ -141,6 +142,7 @@ def drive(
     expect(CALL, "sim", sim, Simulator, "give a cw.Simulator of the driveline")
     expect(CALL, "control", control, Controller, "give a ShiftController or a HybridController")
     expect(CALL, "sensed", sensed or Sensed(), Sensed, "give cw.shifts.Sensed(torque=...)")
+    refuse_prefix(CALL, sim.system, control.box, control.prefix)
     _check_times(sim.time, until, {"period": period, "resting": resting})
     if not isinstance(throttle, str) and not callable(throttle) and not _is_pedal(throttle):
         raise UseError(CALL, [f"throttle is {quote(throttle)}: {PEDAL}, a function of time, or a signal"])

@@ -12,6 +12,7 @@ from clutchwork.gearbox.gearbox import Gearbox
 from clutchwork.results import gears
 from clutchwork.results.gears import GearStretch
 from clutchwork.results.recorded import Recorded
+from clutchwork.shifts.given import prefix_of
 from clutchwork.shifts.record import NEUTRAL
 
 # a gear that is held for less is passed through [s]
@@ -29,15 +30,17 @@ class InGear:
     end: float  # s
 
 
-def gears_of(run: Recorded, box: Gearbox, prefix: str = "gearbox", *, least: float = SHORTEST) -> list[InGear]:
+def gears_of(run: Recorded, box: Gearbox, prefix: str = "", *, least: float = SHORTEST) -> list[InGear]:
     """The gears that a `cw.Transmission` was in, one after the other, without those that it only passed through.
 
     What `run.gears()` lists is put together: a gear whose elements let go for a moment stays one, and so does one whose
     freewheel overruns. Between gears the box is in neutral where no element carries torque for `least`, and something
     of what both gears share was open; a shift in which the input flies free to its new speed has no neutral.
 
-    Parameters: least, time [s] for which a gear must be held, except the first one and the last one.
+    Parameters: prefix, name of the Transmission, which may be left out where it is the only one; least, time [s] for
+    which a gear must be held, except the first one and the last one.
     """
+    prefix = prefix_of(run, box, prefix)
     parts = list(gears.gears_of(run, prefix))
     if not parts:
         return []

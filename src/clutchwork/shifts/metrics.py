@@ -15,7 +15,9 @@ from clutchwork.results.felt import WINDOW
 from clutchwork.results.recorded import Recorded
 from clutchwork.shifts.comfort import jerk, vibration_dose
 from clutchwork.shifts.detect import Shift, shifts_of
+from clutchwork.shifts.given import prefix_of, refuse_unfit
 from clutchwork.shifts.record import NEUTRAL
+from clutchwork.shifts.tie_up import opposing
 
 STEP = 1e-3  # s, of the grid that phases and jerk are looked at on
 # how long a level of the torque is looked at, and how long the element that closes is filled before it carries [s]
@@ -28,7 +30,8 @@ class ShiftQuality:
 
     Parameters:
         shift: gears, elements and phases
-        peak_jerk: largest jerk of the vehicle that is felt, its size [m/s3]; NaN where its acceleration is not known
+        peak_jerk: largest jerk of the vehicle that is felt, its size [m/s3], of a shaft [rad/s3]; NaN where its
+        acceleration is not known
         rms_jerk: root of the mean of its square, from 0.4 s before the begin to half a second behind the end
         vibration_dose: vibration dose value of the same stretch [m/s1.75]
         torque_hole: how far the torque of the output falls below the lower one of its levels before and after, in N m
@@ -39,6 +42,7 @@ class ShiftQuality:
         slip_energy: heat that each element made [J]
         slip_power: largest heat rate of each element [W]
         temperature: highest of the thermal node of each element that has one [K]
+        jerk_unit, torque_unit: of the jerks, "m/s3" or "rad/s3", and of the hole, "N m" or "N"
     """
 
     shift: Shift
@@ -53,12 +57,19 @@ class ShiftQuality:
     slip_energy: Mapping[str, float]
     slip_power: Mapping[str, float]
     temperature: Mapping[str, float]
+    jerk_unit: str = "m/s3"
+    torque_unit: str = "N m"
+
+    @property
+    def dose_unit(self) -> str:
+        """Unit of the vibration dose value: that of the acceleration, times the fourth root of a second."""
+        return self.jerk_unit.replace("s3", "s1.75")
 
 
 def qualities(
     run: Any,
     box: Gearbox,
-    prefix: str = "gearbox",
+    prefix: str = "",
     *,
     torque: str = "",
     acceleration: str = "",
@@ -67,10 +78,15 @@ def qualities(
 ) -> list[ShiftQuality]:
     """What every shift of a run was like.
 
-    Parameters: torque, signal of the torque behind the output [N m], such as that of a drive shaft; acceleration,
-    signal of the vehicle [m/s2], whose speed is asked for its jerk; window, over which a jerk is felt [s]; after, time
-    behind a shift that belongs to it [s]. docs/theory/shifts.md (9)
+    Parameters: prefix, name of the Transmission, which may be left out where it is the only one; torque, signal of the
+    torque behind the output [N m], such as that of a drive shaft, or of a force [N]; acceleration, signal of the
+    vehicle [m/s2] or of a shaft [rad/s2], whose speed is asked for its jerk; window, over which a jerk is felt [s], at
+    least 2 ms; after, time behind a shift that belongs to it [s]. docs/theory/shifts.md (9)
+
+    UseError for signals in other units, UnknownName, a KeyError, for those that are not there.
     """
+    prefix = prefix_of(run, box, prefix)
+    refuse_unfit("cw.shifts.qualities", run, torque, acceleration)
     shifts = shifts_of(run, box, prefix)
     if not shifts:
         return []
@@ -85,7 +101,7 @@ def qualities(
     columns: dict[str, Array] = {}
     windows = [Window(whole, columns, np.searchsorted(whole.time, grid)) for grid in grids]
     return [
-        _quality(part, shift, box, prefix, torque, acceleration, window)
+        _quality(run, part, shift, box, prefix, torque, acceleration, window)
         for part, shift in zip(windows, shifts, strict=True)
     ]
 
@@ -131,7 +147,14 @@ def _speed(part: Window, acceleration: str) -> Array:
 
 
 def _quality(
-    part: Window, shift: Shift, box: Gearbox, prefix: str, torque: str, acceleration: str, window: float
+    run: Any,
+    part: Window,
+    shift: Shift,
+    box: Gearbox,
+    prefix: str,
+    torque: str,
+    acceleration: str,
+    window: float,
 ) -> ShiftQuality:
     time = part.time
     inside = (time >= shift.begin) & (time <= shift.end)
@@ -150,10 +173,12 @@ def _quality(
         hole_share=share,
         flare=flare,
         sag=sag,
-        tie_up=_tie_up(part, shift, prefix),
+        tie_up=_tie_up(run, part, shift, prefix),
         slip_energy={name: part.rise(f"{prefix}.{name}.heat") for name in names},
         slip_power={name: _peak(part, f"{prefix}.{name}", inside) for name in names},
         temperature=_temperatures(part, prefix, names),
+        jerk_unit=run.units[acceleration].replace("s2", "s3") if acceleration else "m/s3",
+        torque_unit=run.units[torque] if torque else "N m",
     )
 
 
@@ -193,16 +218,11 @@ def _overshoot(part: Window, shift: Shift, box: Gearbox, prefix: str, inside: ND
     return (flare if flare > least else 0.0), (sag if sag > least else 0.0)
 
 
-def _tie_up(part: Window, shift: Shift, prefix: str) -> float:
+def _tie_up(run: Recorded, part: Window, shift: Shift, prefix: str) -> float:
     """Torque of elements that open against the direction that they had before, from begin to end of the shift."""
-    worst, time = 0.0, part.time
-    both = (time >= shift.begin) & (time <= shift.end)
-    for name in shift.opens:
-        torque = part[f"{prefix}.{name}.torque"]
-        held = time < shift.begin
-        usual = float(np.sign(np.mean(torque[held]))) if np.any(held) else 1.0
-        worst = max(worst, float(np.max(-usual * torque[both], initial=0.0)))
-    return worst
+    names = [f"{prefix}.{name}" for name in shift.opens]
+    found = (opposing(run, shift, name, part.time, part[f"{name}.torque"]).torque for name in names)
+    return max((float(np.max(torque, initial=0.0)) for torque in found), default=0.0)
 
 
 def _temperatures(part: Window, prefix: str, names: list[str]) -> dict[str, float]:

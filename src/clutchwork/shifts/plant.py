@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from clutchwork.assembly.system import System
 from clutchwork.assembly.wiring import HOUSING, wiring
-from clutchwork.base import UseError, dataclass, listed, near, quote
+from clutchwork.base import UseError, dataclass, listed
 from clutchwork.base.errors import expect
 from clutchwork.base.frozen import Frozen
 from clutchwork.declare.calls import explained
@@ -17,6 +17,7 @@ from clutchwork.gearbox.gearbox import Gearbox
 from clutchwork.run.simulation import Assembles, model_of
 from clutchwork.shifts.actuators import ElementActuator
 from clutchwork.shifts.fill_test import FULL, fill_test
+from clutchwork.shifts.given import refuse_prefix
 from clutchwork.stepping.simulator import Simulator
 
 CALL = "cw.shifts.plant_of"
@@ -59,11 +60,7 @@ def plant_of(system: Assembles | System, box: Gearbox, prefix: str = "gearbox") 
     """
     expect(CALL, "box", box, Gearbox, "give a cw.Gearbox, such as cw.Gearbox.load('zf-8hp70')")
     system = model_of(CALL, system)
-    inner = f".{box.input}"
-    known = [node.name.removesuffix(inner) for node in system.nodes if node.name.endswith(inner)]
-    if prefix not in known:
-        remedy = near(prefix, known, f"there is {listed(known)}" if known else "add one to the driveline")
-        raise UseError(CALL, [f"{quote(prefix)} is not a Transmission of {quote(box.name)}{remedy}"])
+    refuse_prefix(CALL, system, box, prefix)
     actuators = fill_test(system, box, prefix)
     names = [e.name for e in box.elements if e.kind in ("clutch", "brake") and e.name not in actuators]
     low, high = (_capacities(system, prefix, names, pressure) for pressure in (LOW, HIGH))

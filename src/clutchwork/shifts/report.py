@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from math import isnan
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -13,22 +13,36 @@ from clutchwork.base import UseError, columns
 from clutchwork.base.extras import need
 from clutchwork.base.paths import fitting
 from clutchwork.base.writing import replaced
+from clutchwork.shifts.given import prefix_of
 
 if TYPE_CHECKING:
     from clutchwork.gearbox.gearbox import Gearbox
     from clutchwork.run.trajectory import Trajectory
     from clutchwork.shifts.metrics import ShiftQuality
 
-HEADS = (
-    *("shift", "opens", "closes", "begin s", "torque phase s", "inertia phase s", "peak jerk m/s3", "rms jerk m/s3"),
-    *("dose m/s1.75", "torque hole N m", "flare rad/s", "sag rad/s", "tie-up N m", "slip energy kJ", "hottest K"),
-)
+# columns up to those in units of the measures, and behind them
+BEFORE = ("shift", "opens", "closes", "begin s", "torque phase s", "inertia phase s")
+BEHIND = ("flare rad/s", "sag rad/s", "tie-up N m", "slip energy kJ", "hottest K")
 
 
 def table(found: Sequence[ShiftQuality], *, names: Sequence[str] = ()) -> str:
     """All shifts, a line for each. Parameters: names, of the shifts in the first column, by default "1-2"."""
     lines = map(_line, found, names or map(_name, found))
-    return columns([list(HEADS), *lines], right=range(3, len(HEADS)))
+    heads = [*BEFORE, *_measured(found), *BEHIND]
+    return columns([heads, *lines], right=range(3, len(heads)))
+
+
+def _measured(found: Sequence[ShiftQuality]) -> list[str]:
+    """Heads of columns whose units follow from the signals that were given."""
+    jerk = _unit((one.jerk_unit for one in found), "m/s3")
+    dose = _unit((one.dose_unit for one in found), "m/s1.75")
+    torque = _unit((one.torque_unit for one in found), "N m")
+    return [f"peak jerk {jerk}", f"rms jerk {jerk}", f"dose {dose}", f"torque hole {torque}"]
+
+
+def _unit(units: Iterable[str], usual: str) -> str:
+    """A unit, or all that there are, in the order of the lines."""
+    return " or ".join(dict.fromkeys(units)) or usual
 
 
 def _name(one: ShiftQuality) -> str:
@@ -57,15 +71,16 @@ def picture(
     box: Gearbox,
     one: ShiftQuality,
     path: str | Path,
-    prefix: str = "gearbox",
+    prefix: str = "",
     *,
     more: Sequence[str | Sequence[str]] = (),
 ) -> Any:
     """One shift: speeds of input and output, slips, torques and pressures of the elements, and what else is named.
 
-    Parameters: path, png, svg or pdf; more, further panels as of `run.plot`, such as the torque of a drive shaft.
+    Parameters: path, png, svg or pdf; prefix, name of the Transmission, which may be left out where it is the only one;
+    more, further panels as of `run.plot`, such as the torque of a drive shaft.
     """
-    shift = one.shift
+    prefix, shift = prefix_of(run, box, prefix), one.shift
     names = [*shift.opens, *shift.closes]
     panels: list[Any] = [[f"{prefix}.{box.input}.speed", f"{prefix}.{box.output}.speed"]]
     for last in ("slip", "torque", "pressure"):
@@ -96,7 +111,7 @@ def overview(found: Sequence[ShiftQuality], path: str | Path, *, names: Sequence
     axes[0].set_ylabel("time [s]")
     axes[0].legend(frameon=False, ncols=2, loc="lower right", bbox_to_anchor=(1.0, 1.0))
     axes[1].bar(places, [one.peak_jerk for one in found], color="#B5651D")
-    axes[1].set_ylabel("peak jerk [m/s3]")
+    axes[1].set_ylabel(f"peak jerk [{_unit((one.jerk_unit for one in found), 'm/s3')}]")
     bottom = np.zeros(len(found))
     for name in found[0].slip_energy:
         heat = np.array([one.slip_energy[name] / 1e3 for one in found])

@@ -18,7 +18,18 @@ from clutchwork.declare.layout import DONE, INTERRUPTED
 from clutchwork.results.channels import Channels, channels
 from clutchwork.results.forms import LOCKED, all_reads, is_of_structure
 from clutchwork.sweeps.axes import Plan, systems_of
-from clutchwork.sweeps.outputs import AtEnd, AtTimes, Computed, Extreme, FeltJerk, Integral, Output, SquaredJerk, When
+from clutchwork.sweeps.outputs import (
+    AtEnd,
+    AtTimes,
+    Computed,
+    Extreme,
+    FeltJerk,
+    Integral,
+    Output,
+    SquaredJerk,
+    When,
+    missing,
+)
 from clutchwork.sweeps.parts import PARTS, squared_jerk, steps_of
 
 if TYPE_CHECKING:
@@ -83,7 +94,7 @@ class CoreOutputs:
             try:
                 self.channels[one.signal]
             except KeyError as error:
-                yield str(error)
+                yield missing(one, str(error), self.channels)
                 return
             if isinstance(one, Integral) and not one.kept_as(self.channels):
                 yield f"{one.signal} has no exact integral: {self._instead(one.signal.removesuffix('.loss'))}"

@@ -14,6 +14,9 @@ from clutchwork.declare.calls import explained
 from clutchwork.model.changes import all_names, field_of, named, target, targets_of
 from clutchwork.model.model import Model
 
+# what to do about a number that has no factor
+VALUES = "give values: [...]"
+
 
 @dataclass(frozen=True)
 class Factors:
@@ -97,12 +100,13 @@ def _faults(model: Model, name: str, found: Mapping[str, Any]) -> Iterator[str]:
             owners = named(model)
             names = (path for path in all_names(model) if path.startswith(f"{one}."))
             inside = [path for path in names if _is_number(held := _number_of(owners, path)) and held]
-            into = f"take {inside[0]!r} or another number inside of it" if inside else "factors do not reach into it"
-            yield f"{one} is {quote(value)}, not a number that a factor could multiply; {into}, or give values: [...]"
+            other = VALUES if one == name else f"take a pattern that leaves it out, not {name!r}"
+            remedy = f"take {inside[0]!r} or another number inside of it, or {other}" if inside else other
+            yield f"{one} is {quote(value)}, not a number that a factor could multiply; {remedy}"
             return
     if name in found and not numbers:
-        yield f"{name} has no value in this driveline that a factor could multiply; give values: [...]"
+        yield f"{name} has no value in this driveline that a factor could multiply; {VALUES}"
     elif not numbers:
         yield f"{name!r} matches no number of this driveline{near(name, all_names(model))}"
     elif not any(numbers.values()):
-        yield f"{name!r} is 0 in this driveline, which no factor changes; give values: [...]"
+        yield f"{name!r} is 0 in this driveline, which no factor changes; {VALUES}"

@@ -5,6 +5,7 @@ Each output is asked for by name before the runs, and is also a function of a ru
 
 from __future__ import annotations
 
+import re
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from functools import partial
@@ -13,7 +14,7 @@ from typing import TYPE_CHECKING, Any, TypeAlias
 import numpy as np
 from numpy.typing import NDArray
 
-from clutchwork.base import UseError, quote
+from clutchwork.base import UseError, listed, near, quote
 from clutchwork.base.mistakes import Mistakes
 from clutchwork.declare.calls import explained
 from clutchwork.declare.options import instants
@@ -34,6 +35,8 @@ ON_MASSES = {"speed": "position"}
 # a jump of the acceleration is a triangle of the jerk, two windows wide; its peak lies between two instants and is
 # missed by half a step over the window at most, 3 %
 PER_WINDOW = 16
+# what may be meant for the jerk of a shaft, which is no signal
+JERK_OF = re.compile(r"(.+)\.jerk|jerk\((.+)\)")
 
 
 @dataclass(frozen=True)
@@ -389,6 +392,27 @@ def _output(one: Any) -> Output:
         raise UseError("sweep", [f"{one.name} is for calibrate alone{rest}"])
     remedy = "give the name of a signal, cw.at, cw.maximum, cw.lock ... of one, or a function of the run"
     raise UseError("sweep", [f"{quote(one)} is not an output; {remedy}"])
+
+
+def missing(one: AtEnd | AtTimes | Extreme | FeltJerk | Integral | SquaredJerk, fault: str, signals: Any) -> str:
+    """Why the signal of an output is not there: a shaft is named by itself, and its jerk by a call.
+
+    Parameters: fault, what is said of the name of the signal alone; signals, the names that there are.
+    """
+    stem = one.signal.removesuffix(".speed")
+    if isinstance(one, AtTimes) and stem in signals and stem != one.signal:
+        # what `calibrate` makes of a jerk
+        return missing(FeltJerk(stem, WINDOW), fault, signals)
+    if isinstance(one, FeltJerk | SquaredJerk):
+        call = "cw.jerk" if isinstance(one, FeltJerk) else "cw.squared_jerk"
+        shafts = [name.removesuffix(".speed") for name in signals if name.endswith(".speed")]
+        if one.shaft in signals:
+            return f"{quote(one.shaft)} is a signal; give its shaft or mass: {call}({one.shaft.rpartition('.')[0]!r})"
+        return f"no shaft or mass {quote(one.shaft)}{near(one.shaft, shafts) or f'; they are {listed(shafts)}'}"
+    shaft = JERK_OF.fullmatch(one.signal)
+    if shaft is None:
+        return fault
+    return f"no signal {quote(one.signal)}; a jerk is an output of its own: cw.jerk({shaft[1] or shaft[2]!r})"
 
 
 def _missing(run: Trajectory, signal: str) -> Any:

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import Any
 
+from clutchwork.base.quote import apart
 from clutchwork.declare import Found
 
 
@@ -23,9 +24,11 @@ def ratio_problems(ratios: Sequence[float], least: float) -> Found:
     if len(ratios) < 2:
         return [("speed_ratio", f"has {len(ratios)} points, must have at least 2", "give the ratios from stall to 1")]
     if ratios[0] < least:
-        return [("speed_ratio", f"starts at {ratios[0]:g}, below {least:g}", f"start at {least:g} or above")]
+        fault = f"starts at {apart(ratios[0], least)}, below {least:g}"
+        return [("speed_ratio", fault, f"start at {least:g} or above")]
     if ratios[-1] != 1.0:
-        return [("speed_ratio", f"ends at {ratios[-1]:g}, must end at 1", "add the point 1, where no torque is left")]
+        fault = f"ends at {apart(ratios[-1], 1.0)}, must end at 1"
+        return [("speed_ratio", fault, "add the point 1, where no torque is left")]
     return []
 
 
