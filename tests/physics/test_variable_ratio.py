@@ -210,7 +210,7 @@ def test_a_ratio_that_jumps_from_zero_beside_what_another_holds_jams():
 
 
 def test_a_ratio_that_leaves_zero_where_two_others_hold_jams_at_once():
-    """A rack and a sprocket of another radius hold the mass: round-off does not move it, with torques of its inverse."""
+    """A rack and a sprocket of another radius hold the mass: round-off does not move it with torques of its inverse."""
     d = cw.Driveline("rack")
     m, pinion, wheel, motor = d.mass("m", mass=0.366), d.shaft("pinion"), d.shaft("wheel"), d.shaft("motor")
     d.add(cw.RackPinion("rack", shaft=pinion, mass=m, radius=0.133))

@@ -13,6 +13,7 @@ from clutchwork.base import ModelError, dataclass, quote
 from clutchwork.base.arrays import Array
 from clutchwork.base.errors import Problem as Wrong
 from clutchwork.base.mistakes import Mistakes
+from clutchwork.base.quote import measured
 from clutchwork.calibration.limits import Limit, Settled, WeightedSum, summed
 from clutchwork.calibration.moves import Moves, Variable
 from clutchwork.calibration.names import TimeTable, curve, numbers
@@ -165,8 +166,8 @@ def outside(unknowns: Sequence[Variable], moved: Mapping[str, Tunable], what: st
         start = {VALUE: moved[one.numbers[0]].start, FACTOR: 1.0}.get(one.kind, 0.0) if one.numbers else one.low
         room = ROUND_OFF * max(abs(one.low), abs(one.high))
         if not one.low - room <= start <= one.high + room:
-            has = f"{start:g} {one.unit}".rstrip() if one.kind == VALUE else f"{one.kind} {start:g}"
-            ends = f"{one.low:g} to {one.high:g} {one.unit}".rstrip()
+            has = measured(start, one.unit) if one.kind == VALUE else f"{one.kind} {start:g}"
+            ends = f"{one.low:g} to {measured(one.high, one.unit)}"
             factor = one.kind == VALUE and one.low <= 1.0 <= one.high
             other = f", or cw.together({one.name!r}, factor=({one.low:g}, {one.high:g}))" if factor else ""
             yield f"{what} of {one.name!r}: the model has {has}, outside of {ends}; give bounds around it{other}"

@@ -89,7 +89,7 @@ def _round(size: float) -> float:
 def _effort(found: CalibrationRecord) -> str:
     runs = sum(one.runs for one in found.outcomes)
     said = [f"{counted(len(found.outcomes), 'starts')}, {counted(runs, 'runs with gradient')}"]
-    said.append(f"largest violation {found.certificate.violation:.1g} of its scale")
+    said.append(f"largest violation {max(found.certificate.violation, 0.0):.1g} of its scale")
     if len(found.spread) > 1:
         said.append(f"they reached {', '.join(map(_number, found.spread))} {found.problem.unit}".rstrip())
     said.append(f"residual {min(found.certificate.residual, found.around):.1g} of the goal")

@@ -14,6 +14,7 @@ from numpy.typing import NDArray
 from clutchwork.base.classes import dataclass
 from clutchwork.base.errors import ModelError, ModelWarning
 from clutchwork.base.memoize import memoize
+from clutchwork.base.quote import measured
 from clutchwork.declare.layout import FIELDS
 from clutchwork.gradients.finite_differences import ROUND_OFF, Bent, Rebuilt, slope
 from clutchwork.gradients.parameters import Tunable, changes
@@ -138,7 +139,7 @@ class Assembled:
             try:
                 found = slope(partial(_along, there, x, number), here, own, one.compared(own), one.reach, noise)
             except Bent as bent:
-                problems.append(f"{one.name} = {x[number]:g} {one.unit}: {bent}")
+                problems.append(f"{one.name} = {measured(x[number], one.unit)}: {bent}")
                 continue
             columns.append(found.value)
             straight = straight and found.straight
