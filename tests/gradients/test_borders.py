@@ -275,3 +275,34 @@ def test_a_prescribed_speed_that_jumps_by_nothing_jumps_with_its_height() -> Non
     step = 1e-3
     expected = (function(function.x0 + step) - function(function.x0 - step)) / (2.0 * step)
     assert function.gradient().matrix[:, 0] == pytest.approx(expected, rel=1e-6)
+
+
+def together(torque: float) -> cw.Driveline:
+    """Two discs that a clutch of 12.5 N m holds together, which carries four fifths of a torque."""
+    d = cw.Driveline("together")
+    a, b = d.shaft("a", inertia=0.2), d.shaft("b", inertia=0.8)
+    d.add(cw.Clutch("c", base=a, follower=b, friction=cw.Coulomb(static=0.125, kinetic=0.1), gain=5e-4, pressure=2e5))
+    d.add(cw.Torque("t", shaft=a, torque=torque))
+    return d
+
+
+def test_a_clutch_that_holds_all_that_it_can_from_the_start_has_one_side() -> None:
+    # a little more torque breaks it away, and the speed jumps
+    function = cw.differentiable(together(15.625), 2.0, of="b.speed", by="t.torque")
+    with pytest.raises(cw.NoGradient, match=r'holds all that it can, from 0 s on.*side="left" gives 2$'):
+        function.gradient()
+    assert cw.differentiable(together(15.6), 2.0, of="b.speed", by="t.torque").gradient().matrix == pytest.approx(2.0)
+
+
+def test_a_reason_is_that_of_the_number_it_concerns() -> None:
+    # the load of the brake is zero up to 0.1 s; that another clutch locks at a bend later changes nothing there
+    d = cw.Driveline("reasons")
+    a, b = d.shaft("a", inertia=0.2, speed=10.0), d.shaft("b", inertia=0.2, speed=10.0)
+    d.add(cw.Torque("t", shaft=a, torque=30.0))
+    ramp = cw.Table([(0.0, 0.0), (0.1, 0.0), (0.6, 1e5), (3.0, 1e5)])
+    d.add(cw.Brake("b1", shaft=b, friction=COULOMB, gain=5e-4, pressure=ramp))
+    d.add(cw.OneWayClutch("f", base=a, follower=b))
+    late = cw.Table([(0.0, 0.0), (1.0, 0.0), (1.3, 3e5), (3.0, 3e5)])
+    d.add(cw.Clutch("k1", base=a, follower=b, friction=COULOMB, gain=5e-4, pressure=late))
+    with pytest.raises(cw.NoGradient, match=r"b1.pressure is 0 from 0 to 0.1 s"):
+        cw.differentiable(d, 1.5, of="b.speed", by="b1.pressure.values[2]").gradient()

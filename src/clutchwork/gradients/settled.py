@@ -32,6 +32,8 @@ JUMP, FURTHER, NOISE = 1e-3, 10.0, 1e-9
 # so many numbers in doubt are first looked at together, in so many directions
 TOGETHER, DIRECTIONS = 3, 2
 SIDES = {"left": -1.0, "right": 1.0}
+# derivatives from both sides that are told of one reason
+SHOWN = 3
 
 
 @dataclass(frozen=True, eq=False)
@@ -55,7 +57,8 @@ class Settling:
         """Those of a run."""
         why, one_way = np.full((len(lines), len(x)), "", dtype=object), np.ones(len(x), dtype=bool)
         steps = STEP * sizes
-        for doubt in reversed(doubts):
+        # what concerns few numbers says more about them than what may concern all
+        for doubt in sorted(reversed(doubts), key=lambda one: (-int(one.numbers.sum()), one.one_way)):
             why[np.ix_(doubt.lines, doubt.numbers)] = doubt.why
             one_way &= doubt.one_way | ~doubt.numbers
             steps = np.maximum(steps, np.where(doubt.numbers, doubt.width * STEP * sizes, 0.0))
@@ -177,7 +180,8 @@ class Settling:
             line = self.lines[place[0]]
             reasons.setdefault(line.none or self.why[place] or line.several, []).append(place)
         for why, places in reasons.items():
-            yield f"{why}{self._sides(*places[0])}{'' if missing.all() else self._where(places)}"
+            sides = "".join(self._sides(*place) for place in places[:SHOWN])
+            yield f"{why}{sides}{'' if missing.all() else self._where(places)}"
 
     def _sides(self, line: int, number: int) -> str:
         """What one-sided derivatives there are instead."""

@@ -16,10 +16,11 @@ struct Least {
   int& who;
   const bool rests;
 
-  explicit Least(int& whose) : who(whose), rests(whose == resting) {}
+  explicit Least(int& whose) : who(whose), rests(has_tangents<S> && whose == resting) {}
   void watch(const S& guard, int number) {
     // round-off of a guard, and of what it does in a second, where that is asked for
-    const double still = rests ? 1e-12 : 0.0, slow = 1e3 * still;
+    const bool asked = has_tangents<S> && rests;
+    const double still = asked ? 1e-12 : 0.0, slow = 1e3 * still;
     bool moves = abs(value(guard)) > still;
     if constexpr (requires { guard.d; }) {
       for (auto i = 0u; i < sizeof(guard.d) / sizeof(guard.d[0]); ++i) {
@@ -27,7 +28,7 @@ struct Least {
         moves = moves || abs(value(guard.d[i])) > slow;
       }
     }
-    if (moves == rests) return;
+    if (moves == asked) return;
     if (value(guard) < value(least)) least = plain_of(guard), who = number;
   }
   S margin() const { return least + change; }
