@@ -597,8 +597,10 @@ def test_a_peak_where_a_gear_turns_its_load_among_short_steps() -> None:
         cw.differentiable(d, 0.101, of=cw.minimum("housing.torque"), by=by, rtol=rtol, atol=rtol / 100).gradient()
         for rtol in (1e-9, 1e-10)
     ]
-    # at both tolerances as exactly: 100 times that of the looser run, and as much for what short steps leave
-    np.testing.assert_allclose(found[0].matrix, found[1].matrix, rtol=1e-6)
+    # at both tolerances as exactly: 100 times that of the looser run, and as much for what short steps leave; or noted,
+    # for steps of a millionth of a second divide what rows are off by, which is not the same on every machine
+    is_noted = any("fewer digits than the run" in note for one in found for note in one.notes)
+    np.testing.assert_allclose(found[0].matrix, found[1].matrix, rtol=1e-4 if is_noted else 1e-6)
 
 
 def test_a_peak_at_a_point_of_a_table_by_more_numbers_than_a_run_carries() -> None:

@@ -284,12 +284,15 @@ def add_extreme(primal: Primal, one: Extreme, found: Located, into: Functional) 
         return moves, TOP_MISSES
     if not inside:
         slopes = steps.left_slope if found.share == 0.0 else steps.right_slope
-        rate = float(slopes[found.step] @ signal_at(primal, one.signal, steps.rows[found.step]))
+        values = signal_at(primal, one.signal, steps.rows[found.step])
+        rate = float(slopes[found.step] @ values)
         if primal.between[0][end] != SMOOTH:
             add_shift(primal, int(end or 0), sign * rate, into)
             moves = primal.functional()
             add_shift(primal, int(end or 0), 1.0, moves)
-            return moves, abs(rate) * missed(primal, found.step, at_end=found.share == 1.0)
+            # in a short step the slope has what rows are off by, too
+            off = primal.rtol * float(np.abs(values).max()) / float(steps.length[found.step])
+            return moves, abs(rate) * missed(primal, found.step, at_end=found.share == 1.0) + off
         if jumps(primal, one.signal, int(end or 0)):
             add_turn(primal, one.signal, int(end or 0), sign * rate, into)
     return None

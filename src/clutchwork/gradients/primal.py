@@ -58,6 +58,7 @@ class Primal:
     columns: Mapping[str, slice]  # parts of a row
     kinds: Sequence[str]  # of each number of a row its part
     t_end: float  # s
+    rtol: float  # relative tolerance of the run, to which rows inside of its steps are known
 
     def functional(self) -> Functional:
         """One without weights."""

@@ -221,6 +221,7 @@ class Runs:
             columns=self._wiring.columns,
             kinds=self._wiring.kinds,
             t_end=self.wanted.t_end,
+            rtol=self.task.options.rtol,
         )
 
     def _refuse_stopped(self, status: int, detail: Detail) -> None:

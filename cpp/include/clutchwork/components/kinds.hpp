@@ -151,7 +151,7 @@ CLUTCHWORK_INLINE bool contact_one_way(const Workspace<T>& ws, int c) {
 
 /// What a freewheel holds before it gives way [N m].
 template <class T>
-T freewheel_limit(const Workspace<T>& ws, int c) {
+[[gnu::noinline]] T freewheel_limit(const Workspace<T>& ws, int c) {
   return visit_contact(ws.sys.contact_kind[c], [&](auto tag) {
     using E = typename decltype(tag)::type;
     if constexpr (YieldingContact<E>)

@@ -16,20 +16,29 @@ struct Least {
   int& who;
   const bool rests;
 
-  explicit Least(int& whose) : who(whose), rests(has_tangents<S> && whose == resting) {}
+  explicit Least(int& whose) : who(whose), rests(whose == resting) {}
   void watch(const S& guard, int number) {
-    // round-off of a guard, and of what it does in a second, where that is asked for
-    const bool asked = has_tangents<S> && rests;
-    const double still = asked ? 1e-12 : 0.0, slow = 1e3 * still;
-    bool moves = abs(value(guard)) > still;
+    if constexpr (has_tangents<S>) {
+      if (rests) return watch_resting(guard, number);
+    }
+    bool moves = false;
     if constexpr (requires { guard.d; }) {
       for (auto i = 0u; i < sizeof(guard.d) / sizeof(guard.d[0]); ++i) {
         change.d[i] += abs(guard.d[i]);
-        moves = moves || abs(value(guard.d[i])) > slow;
+        moves = moves || value(guard.d[i]) != 0;
       }
     }
-    if (moves == asked) return;
+    if (value(guard) == 0 && !moves) return;
     if (value(guard) < value(least)) least = plain_of(guard), who = number;
+  }
+  /// One that is zero and does not move, to round-off.
+  void watch_resting(const S& guard, int number) {
+    constexpr double still = 1e-12, slow = 1e-9;
+    bool moves = abs(value(guard)) > still;
+    if constexpr (requires { guard.d; }) {
+      for (auto i = 0u; i < sizeof(guard.d) / sizeof(guard.d[0]); ++i) moves = moves || abs(value(guard.d[i])) > slow;
+    }
+    if (!moves) least = plain_of(guard), who = number;
   }
   S margin() const { return least + change; }
 };

@@ -96,6 +96,16 @@ int choose_candidates(Workspace<T>& ws, int located, double tolerance) {
   return -1;
 }
 
+/// Bounds of the torque of a contact that follows no load.
+template <class T>
+T least_torque(const Workspace<T>& ws, int c) {
+  return free_way(ws, c) < 0 ? T(-infinity) : -usable_capacity(ws, c, forward);
+}
+template <class T>
+T most_torque(const Workspace<T>& ws, int c) {
+  return free_way(ws, c) > 0 ? freewheel_limit(ws, c) : usable_capacity(ws, c, backward);
+}
+
 /// The problem of the candidates: bounds from their static torques, accelerations from all other torques. `warm`: it
 /// starts at the torques of the decision so far.
 template <class T>
@@ -109,11 +119,8 @@ BoundedProblem<T> pose_problem(Workspace<T>& ws, bool warm) {
   BoundedProblem<T> p = gather(ws, list, n);
   for (int a = 0; a < n; ++a) {
     const int c = list[a];
-    const T resists_forward = usable_capacity(ws, c, forward), resists_backward = usable_capacity(ws, c, backward);
     p.gradient[a] = slip_acceleration(ws, c, q);
-    const int way = free_way(ws, c);
-    p.lower[a] = way < 0 ? T(-infinity) : -resists_forward;
-    p.upper[a] = way > 0 ? freewheel_limit(ws, c) : resists_backward;
+    p.lower[a] = least_torque(ws, c), p.upper[a] = most_torque(ws, c);
     capacity[a] = larger(-p.lower[a], p.upper[a]);
     p.x[a] = warm ? ws.decision.torque[c] : T(0);
     if (is_rigid(ws, c)) p.matrix.diagonal[a] = T(1e-300);
@@ -195,16 +202,6 @@ int turned_back(Workspace<T>& ws, const BoundedProblem<T>& p) {
     if (ws.contact.mode[c] * value(slip_acceleration(ws, c, q)) < -noise) return c;
   }
   return -1;
-}
-
-/// Bounds of the torque of a contact that follows no load.
-template <class T>
-T least_torque(const Workspace<T>& ws, int c) {
-  return free_way(ws, c) < 0 ? T(-infinity) : -usable_capacity(ws, c, forward);
-}
-template <class T>
-T most_torque(const Workspace<T>& ws, int c) {
-  return free_way(ws, c) > 0 ? freewheel_limit(ws, c) : usable_capacity(ws, c, backward);
 }
 
 /// Whether a contact is let go and has not moved yet.
@@ -359,13 +356,12 @@ int release_driven(Workspace<T>& ws, double tolerance) {
 /// Whether an independent contact of no set holds what it carries, in a decision.
 template <class T>
 bool holds_alone(const Workspace<T>& ws, int a) {
-  const int c = ws.held.contact[a], way = free_way(ws, c);
+  const int c = ws.held.contact[a];
   if (is_rigid(ws, c)) return true;
   double noise = 0;
   for (int b = 0; b < ws.held.n; ++b) noise = larger(noise, 1e-11 * abs(value(ws.held.carried[b])));
   const double torque = value(ws.held.carried[a]);
-  return (way < 0 || torque >= -value(usable_capacity(ws, c, forward)) - noise) &&
-         torque <= value(way > 0 ? freewheel_limit(ws, c) : usable_capacity(ws, c, backward)) + noise;
+  return torque >= value(least_torque(ws, c)) - noise && torque <= value(most_torque(ws, c)) + noise;
 }
 
 /// Whether all candidates together hold, where some depend on others and some follow loads: then they do. They cannot

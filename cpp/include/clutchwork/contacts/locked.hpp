@@ -271,13 +271,22 @@ void list_driven(Workspace<T>& ws) {
   }
 }
 
+/// Bounds of the torque of a locked contact that follows no load.
+template <class T>
+[[gnu::noinline]] void bounds_of_held(const Workspace<T>& ws, int c, T& lower, T& upper) {
+  const int way = free_way(ws, c);
+  lower = way < 0 ? T(-infinity) : -capacity_of(ws, c, forward);
+  upper = way > 0 ? freewheel_limit(ws, c) : capacity_of(ws, c, backward);
+}
+
 /// Contacts that hold more come first, each the way in which it holds most: what slips and follows a load moves with the
 /// torques of the independent contacts, the first of a set. docs/theory/load-dependent.md, rule 3
 template <class T>
 [[gnu::noinline]] void sort_by_strength(const Workspace<T>& ws, int* contact, int n) {
   auto strength = [&](int c) {
-    const double one_way = free_way(ws, c) > 0 ? value(freewheel_limit(ws, c)) : free_way(ws, c) < 0 ? infinity : 0.0;
-    return larger(one_way, larger(value(capacity_of(ws, c, forward)), value(capacity_of(ws, c, backward))));
+    T lower, upper;
+    bounds_of_held(ws, c, lower, upper);
+    return larger(value(-lower), value(upper));
   };
   for (int a = 1; a < n; ++a) {
     const int c = contact[a];
@@ -309,7 +318,7 @@ void list_locked(Workspace<T>& ws) {
   h.too_many = h.vanished = false;
   if (ws.ratios.n == 0 && (!ws.geometry.redundant || n < 2)) return;
   if (is_few(ws.sys)) {
-    const int rank = h.rank = apart ? split_held(ws, n, 1e-3) : split_held(ws, n);
+    const int rank = h.rank = split_held(ws, n, apart ? 1e-3 : 2.0);
     for (int a = 0; a < n; ++a) h.number[a] = -1;
     for (int j = 0; j < rank; ++j) h.number[h.order[j]] = 0;
     ws.ratios.n > 0 ? list_independent_beside(ws, n) : list_independent(ws, n);
@@ -385,9 +394,8 @@ DependentSet<T> dependent_set(Workspace<T>& ws, int k, const T* carried, T noise
       set.lower[i] = T(-infinity), set.upper[i] = T(infinity);
       continue;
     }
-    const int way = free_way(ws, c);
-    set.lower[i] = (way < 0 ? T(-infinity) : -capacity_of(ws, c, forward)) - noise;
-    set.upper[i] = (way > 0 ? freewheel_limit(ws, c) : capacity_of(ws, c, backward)) + noise;
+    bounds_of_held(ws, c, set.lower[i], set.upper[i]);
+    set.lower[i] -= noise, set.upper[i] += noise;
   }
   return set;
 }

@@ -196,7 +196,7 @@ void factor_ties(const Ratios<T>& r, const Tied<S>& w) {
       w.gram[t * m + u] = s;
       if (u < t) w.gram[t * m + u] = value(w.gram[u * m + u]) != 0 ? s / w.gram[u * m + u] : S(T(0));
     }
-    for (int j = 0; j < t; ++j) size += value(w.gram[t * m + j] * w.gram[t * m + j] * sizes[j]);
+    for (int j = 0; j < t; ++j) size += value(sizes[j]) * value(w.gram[t * m + j]) * value(w.gram[t * m + j]);
     sizes[t] = S(T(size));
     if (!(value(w.gram[t * m + t]) > least * size)) w.gram[t * m + t] = S(T(0));
   }
