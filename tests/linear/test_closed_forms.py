@@ -280,3 +280,23 @@ def test_angles_are_states_where_they_are_asked_for():
     assert lin.states == ("engine.speed", "car.speed", "shaft.twist", "hub.angle")
     assert lin.C[0] == pytest.approx([0.0, 0.0, 1.0, 1.0], rel=EXACT)
     assert lin.A[3] == pytest.approx([1.0, 0.0, 0.0, 0.0], rel=EXACT)
+
+
+@pytest.mark.parametrize("forces", [(200.0, 200.0), (200.0, 320.0)])
+def test_a_freewheel_and_two_clutches_share_a_load_as_the_run_does(forces):
+    """Of the load the freewheel has half, and each clutch a share of its capacity in both, also where they are equal."""
+    d = cw.Driveline("set")
+    a, b = d.shaft("a", inertia=0.3), d.shaft("b", inertia=0.2)
+    d.add(cw.Torque("t", shaft=a, torque=30.0))
+    law = cw.Coulomb(static=0.1, kinetic=0.1)
+    d.add(cw.Brake("holds", shaft=b, friction=law, gain=1.0, normal_force=1e4))
+    d.add(cw.OneWayClutch("f", base=a, follower=b))
+    for name, force in zip(("c1", "c2"), forces, strict=True):
+        d.add(cw.Clutch(name, base=a, follower=b, friction=law, gain=1.0, normal_force=force, locked=True))
+    lin = cw.linearise(d, outputs=["f.torque", "c1.torque", "c2.torque"])
+    first, second = forces
+    expected = [0.0, 15.0 * second / (first + second) ** 2, -15.0 * second / (first + second) ** 2]
+    assert lin.D[:, lin.inputs.index("c1.normal_force")] == pytest.approx(expected, rel=1e-9, abs=1e-12)
+    run = d.simulate(0.01)
+    assert run["f.torque"][-1] == pytest.approx(15.0, rel=1e-12)
+    assert run["c1.torque"][-1] == pytest.approx(15.0 * first / (first + second), rel=1e-12)

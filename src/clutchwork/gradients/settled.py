@@ -58,7 +58,8 @@ class Settling:
         why, one_way = np.full((len(lines), len(x)), "", dtype=object), np.ones(len(x), dtype=bool)
         steps = STEP * sizes
         # what concerns few numbers says more about them than what may concern all
-        for doubt in sorted(reversed(doubts), key=lambda one: (-int(one.numbers.sum()), one.one_way)):
+        order = [(-int(one.numbers.sum()), one.one_way, -place) for place, one in enumerate(doubts)]
+        for doubt in (doubts[-place] for _, _, place in sorted(order)):
             why[np.ix_(doubt.lines, doubt.numbers)] = doubt.why
             one_way &= doubt.one_way | ~doubt.numbers
             steps = np.maximum(steps, np.where(doubt.numbers, doubt.width * STEP * sizes, 0.0))
