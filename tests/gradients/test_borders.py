@@ -306,3 +306,20 @@ def test_a_reason_is_that_of_the_number_it_concerns() -> None:
     d.add(cw.Clutch("k1", base=a, follower=b, friction=COULOMB, gain=5e-4, pressure=late))
     with pytest.raises(cw.NoGradient, match=r"b1.pressure is 0 from 0 to 0.1 s"):
         cw.differentiable(d, 1.5, of="b.speed", by="b1.pressure.values[2]").gradient()
+
+
+def test_freewheels_in_a_ring_let_go_at_instants_of_their_own() -> None:
+    # all loads pass zero at one instant; a little torque at one of the discs parts these
+    d = cw.Driveline("ring")
+    a, b, c = d.shaft("a", inertia=0.3), d.shaft("b", inertia=0.02), d.shaft("c", inertia=0.1)
+    d.add(cw.Torque("t", shaft=a, torque=cw.Ramp(height=-25.0, duration=0.5, start=0.1, offset=10.0)))
+    d.add(cw.Torque("tc", shaft=c, torque=0.0))
+    for name, base, follower in (("f1", a, b), ("f2", b, c), ("f3", a, c)):
+        d.add(cw.OneWayClutch(name, base=base, follower=follower))
+    with pytest.raises(cw.ClutchworkError, match="move apart"):
+        cw.differentiable(d, 0.6, of="c.speed", by="tc.torque").gradient()
+    step = 1e-4
+    for side, way in (("left", -step), ("right", step)):
+        function = cw.differentiable(d, 0.6, of="c.speed", by="tc.torque", side=side)
+        expected = (function(function.x0 + way) - function(function.x0)) / way
+        assert function.gradient().matrix[0, 0] == pytest.approx(expected[0], rel=1e-3)

@@ -327,6 +327,32 @@ T sudden_shift(Form& form, Step<Form>& step, const Hit& hit, const T* velocity, 
   return rate != 0 ? without_value(guard) * T(-1 / rate) : T(0);
 }
 
+/// Loads of a set that pass zero together with what it holds: where they do so at other instants for other numbers is
+/// noted, by the largest difference.
+template <class Form, class T = typename Form::Scalar>
+void note_loads(Form& form, Step<Form>& step, const Hit& hit, const T* velocity, const T& shift) {
+  Workspace<T>& ws = form.ws;
+  const int first = ws.held.set_first[hit.index], rank = ws.held.set_rank[hit.index];
+  if (rank < 2 || ws.moved.n == 0) return;
+  const double reach = 1e-4 * larger(ws.moved.span, 1e-9);
+  T* probe = step.k(1);
+  auto load = [&](int i, double later) {
+    for (int k = 0; k < form.n(); ++k) probe[k] = step.y0()[k] + velocity[k] * later;
+    ws.in.time = -infinity;
+    see_torques(form, step, ws.time + later, probe);
+    return ws.observed.carried[ws.held.set_place[i]];
+  };
+  double& apart = ws.moved.graze[ws.moved.n - 1].together;
+  for (int i = first; i < first + rank; ++i) {
+    const T here = load(i, 0.0), moves = without_value(here);
+    const double change = value(load(i, reach)) - value(here), size = 1e-6 * torque_size(ws);
+    if (abs(value(here)) > size || !(largest_difference(moves, T(0)) > 0)) continue;
+    // one that stays at zero is there at any instant
+    const bool stays = abs(change) <= 1e-6 * size;
+    apart = stays ? with_jump : larger(apart, largest_difference(moves * T(-reach / change), shift));
+  }
+}
+
 /// How a hit moves: minus the derivative of its guard at a fixed instant over its time derivative; one that has jumped
 /// moves with what made it jump. docs/theory/gradients.md (3)
 template <class G, class Form, class T = typename Form::Scalar>
@@ -347,6 +373,7 @@ T hit_shift(Form& form, Step<Form>& step, const Hit& hit, const T* velocity) {
       double rate = 0;
       const T shift = sudden_shift<G>(form, step, hit, velocity, rate);
       note_graze(ws, hit.what, component, abs(rate), shift);
+      note_loads(form, step, hit, velocity, shift);
       return shift;
     }
   }
