@@ -284,7 +284,7 @@ def test_angles_are_states_where_they_are_asked_for():
 
 @pytest.mark.parametrize("forces", [(200.0, 200.0), (200.0, 320.0)])
 def test_a_freewheel_and_two_clutches_share_a_load_as_the_run_does(forces):
-    """Of the load the freewheel has half, and each clutch a share of its capacity in both, also where they are equal."""
+    """Of the load the freewheel has half, each clutch a share of its capacity in both, also where they are equal."""
     d = cw.Driveline("set")
     a, b = d.shaft("a", inertia=0.3), d.shaft("b", inertia=0.2)
     d.add(cw.Torque("t", shaft=a, torque=30.0))

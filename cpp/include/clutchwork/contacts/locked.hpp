@@ -279,8 +279,8 @@ template <class T>
   upper = way > 0 ? freewheel_limit(ws, c) : capacity_of(ws, c, backward);
 }
 
-/// Contacts that hold more come first, each the way in which it holds most: what slips and follows a load moves with the
-/// torques of the independent contacts, the first of a set. docs/theory/load-dependent.md, rule 3
+/// Contacts that hold more come first, each the way in which it holds most: what slips and follows a load moves with
+/// the torques of the independent contacts, the first of a set. docs/theory/load-dependent.md, rule 3
 template <class T>
 [[gnu::noinline]] void sort_by_strength(const Workspace<T>& ws, int* contact, int n) {
   auto strength = [&](int c) {
