@@ -12,6 +12,7 @@ from typing import Any, ClassVar, NamedTuple
 
 from clutchwork.base import dataclass
 from clutchwork.base.errors import nearest
+from clutchwork.base.memoize import memoize
 from clutchwork.declare import Law, SignalLike, family, formula, param, signal, units
 from clutchwork.declare.pints import is_quantity
 from clutchwork.declare.pints import powers_of as powers_of_pint
@@ -111,6 +112,11 @@ class FormulaLaw(Law):
         return {"expression": program.code, "at_rest": program.head, "rates": program.rate_words}[field]
 
     def problems(self) -> Found:
+        return list(self._problems())
+
+    @memoize
+    def _problems(self) -> Found:
+        # asked for with every change of a driveline that keeps the law
         program, mistakes = self._program
         found = [(one.field, one.message, one.remedy) for one in mistakes]
         if program is None:
@@ -139,6 +145,7 @@ class FormulaLaw(Law):
         jump, remedy = self.jump(unit)
         return [("expression", f"{jump}, where no step ends and gradients do not exist", remedy)] if jump else []
 
+    @memoize
     def jump(self, unit: str) -> tuple[str, str]:
         """Where it jumps within the inputs of its check, "jumps from 0.4 to 0.2 at a slip of 3 rad/s", and a remedy.
 
