@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 
 import clutchwork as cw
+from clutchwork.gradients.grazing import AT, BY_NAME
 from support import by_differences
 
 COULOMB = cw.Coulomb(static=0.12, kinetic=0.1)
@@ -323,3 +324,24 @@ def test_freewheels_in_a_ring_let_go_at_instants_of_their_own() -> None:
         function = cw.differentiable(d, 0.6, of="c.speed", by="tc.torque", side=side)
         expected = (function(function.x0 + way) - function(function.x0)) / way
         assert function.gradient().matrix[0, 0] == pytest.approx(expected[0], rel=1e-3)
+
+
+@pytest.mark.parametrize("seed", range(4))
+def test_a_sprag_clutch_whose_torque_ends_overruns_whatever_its_round_off(seed: int) -> None:
+    # right above zero it was taken for one at the torque at which it gives way, of hundreds of N m
+    rng = np.random.default_rng(seed)
+    d = cw.Driveline("overruns")
+    a, b = d.shaft("a", inertia=rng.uniform(0.05, 0.9)), d.shaft("b", inertia=rng.uniform(0.05, 0.9))
+    m0, m1, s0 = d.mass("m0", mass=rng.uniform(1, 90)), d.mass("m1", mass=2.0), d.shaft("s0", inertia=0.004)
+    swing = {"amplitude": rng.uniform(5, 30), "frequency": rng.uniform(5, 20), "offset": rng.uniform(0, 2)}
+    d.add(cw.Torque("t", shaft=a, torque=cw.Sine(**swing)))
+    d.add(cw.SpringDamper("k", base=s0, follower=b, stiffness=rng.uniform(20, 900), damping=0.0))
+    rolls = cw.Coulomb(static=0.0, kinetic=0.0)
+    d.add(cw.SpragClutch("f", base=a, follower=b, holding=rng.uniform(100, 1000), friction=rolls))
+    d.add(cw.LossyGear("g", input=m0, output=m1, efficiency=0.667, ratio=-0.317))
+    assert not any(event.cause == "fault" for event in d.simulate(0.5).events)
+    function = cw.differentiable(d, 0.5, of="b.speed", by=["t.torque.amplitude", "a.inertia"])
+    runs = function.engine.runs
+    causes = runs.forward(runs.point(function.x0)).primal.events[:, AT["cause"]]
+    assert len(causes)
+    assert BY_NAME["fault"] not in causes

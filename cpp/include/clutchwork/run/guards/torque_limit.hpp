@@ -18,7 +18,10 @@ namespace clutchwork {
 /// Whether a freewheel was hit at the torque at which it gives way, and not where its torque ends.
 template <class T>
 bool rolls_over(const Workspace<T>& ws, int c) {
-  return contact_one_way(ws, c) && value(freewheel_limit(ws, c)) < infinity && value(ws.event_context.torque[c]) > 0;
+  if (!contact_one_way(ws, c)) return false;
+  // where its torque ends it is round-off of either sign
+  const double limit = value(freewheel_limit(ws, c));
+  return limit < infinity && value(ws.event_context.torque[c]) > 0.5 * limit;
 }
 
 /// Smallest margin of the watched locked contacts at s, and whose it is.
