@@ -261,7 +261,7 @@ class Exact:
         run, outputs = self._run(point, len(self.task.labels)), self.task.outputs
         found = lines(run, outputs, self.task.labels, self._asked, point.sizes)
         for time, why in passed_unseen(self.task.system, run.primal.grazes):
-            found = [one.without_derivatives(why) if one.until >= time else one for one in found]
+            found = [one.refused(why) if one.until >= time else one for one in found]
         return run, found
 
     def _run(self, point: RunPoint, results: int) -> Run:

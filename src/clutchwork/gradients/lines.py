@@ -48,7 +48,7 @@ class Line(NamedTuple):
     rough: bool = False  # whether a run of a tighter tolerance knows its derivatives better
     missed: float = 0.0  # the most that is not known of one of them, of the value
 
-    def without_derivatives(self, why: str) -> Line:
+    def refused(self, why: str) -> Line:
         """The same where it has none by the numbers that move it."""
         nothing = np.where((self.left == 0.0) & (self.right == 0.0), 0.0, np.nan)
         return self._replace(left=nothing, right=nothing, none=why, several="", rough=False)
