@@ -172,6 +172,21 @@ def test_a_set_whose_load_passes_zero_lets_go_when_it_does(rtol: float) -> None:
     np.testing.assert_allclose(function.gradient().matrix, [expected, expected], rtol=1e-7)
 
 
+@pytest.mark.parametrize("rtol", [1e-6, 1e-9])
+def test_a_screw_that_is_pressed_against_a_stop_lets_go_when_its_torque_turns(rtol: float) -> None:
+    # seed 220235: the stop holds all of any load one way, so that no bound of the screw has anything left
+    d = cw.Driveline("pressed")
+    a, m = d.shaft("a", inertia=0.1, angle=0.03), d.mass("m", mass=50.0)
+    d.add(cw.Torque("t", shaft=a, torque=cw.Ramp(height=25.0, duration=0.5, start=0.1, offset=-10.0)))
+    d.add(cw.EndStop("stop", follower=a, lower=-0.1, upper=0.03))
+    d.add(cw.Leadscrew("screw", screw=a, mass=m, lead=0.035, radius=0.074, friction_coefficient=0.0283))
+    names = ["t.torque.offset", "t.torque.height", "t.torque.duration", "t.torque.start"]
+    of = [cw.break_away("stop"), cw.break_away("screw")]
+    found = cw.differentiable(d, 0.35, of=of, by=names, rtol=rtol, atol=rtol / 100).gradient()
+    expected = [-0.5 / 25.0, -0.5 * 10.0 / 25.0**2, 10.0 / 25.0, 1.0]
+    np.testing.assert_allclose(found.matrix, [expected, expected], rtol=1e-7)
+
+
 def test_a_set_that_is_closed_without_load_has_a_side_for_each_sign_of_it() -> None:
     # one way both move together, the other way the disc stays behind
     model = overrunning(reverses=False)

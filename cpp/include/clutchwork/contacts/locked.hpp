@@ -437,7 +437,8 @@ template <class T>
 }
 
 /// What a set has left that holds any multiple of its load or none, whatever its limit: the least of what the bounds of
-/// its members have left that are not reached, of the size of the load; below zero where it does not hold.
+/// its members have left that are not reached, of the size of the load; below zero where it does not hold. Where those
+/// without loads hold all of it, the load itself [N m], which is zero where they let go.
 template <class T>
 [[gnu::noinline]] T set_slack(Workspace<T>& ws, int k, const T* carried, const T* load) {
   const DependentSet<T> set = dependent_set(ws, k, carried, T(0));
@@ -450,6 +451,11 @@ template <class T>
   T least = T(infinity);
   for (int j = set.n; j < set.n + 2 * limit.n_loads; ++j) {
     if (limit.place[j] >= 0 && value(limit.x[j]) > reached && value(limit.x[j]) < value(least)) least = limit.x[j];
+  }
+  if (!(value(least) < infinity)) {
+    T most = T(0);
+    for (int r = 0; r < set.rank; ++r) most = larger(most, abs(set.load[r]));
+    return most;
   }
   return least / (factor * limit.size);
 }

@@ -40,7 +40,7 @@ class Phase : public StepSize<typename Form::Scalar> {
   using Base = StepSize<T>;
   using Base::landings_, Base::rejected_, Base::cut_, Base::over_, Base::status_;
   using Base::what_is_spent, Base::plan_step, Base::end_of_step, Base::time_at, Base::shorten, Base::has_rows,
-      Base::move_on;
+      Base::move_on, Base::is_too_short;
   using Base::ws_, Base::sink_, Base::t_end_, Base::h_, Base::reach_, Base::stop_, Base::error_, Base::before_;
   // a step may be repeated so often to end on an event
   static constexpr int most_landings = 4;
@@ -517,6 +517,10 @@ class Phase : public StepSize<typename Form::Scalar> {
       if constexpr (has_tangents<T>) {
         if (ws_.guard.n_undirected != before) linearize_start();
       }
+    }
+    if constexpr (Form::full) {
+      // towards a pole steps shrink without being rejected
+      if (h_ < reach_ && is_too_short(h_)) return collapse();
     }
     if (ws_.guard.n_chattering > 0 && chatters(ws_)) leave(Status::chatter);
     if (!calls_.stiff && !over_ && ws_.options.method == Method::auto_) watch_strain();

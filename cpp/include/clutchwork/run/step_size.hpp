@@ -70,13 +70,16 @@ struct StepSize {
   /// The time at a share of the step: at its end the same to the last bit as the run then has.
   CLUTCHWORK_INLINE double time_at(double s) const { return s >= 1 ? end_of_step() : ws_.time + s * reach_; }
 
+  /// Whether a step is next to none of the time: rows and accelerations would be of its round-off.
+  CLUTCHWORK_INLINE bool is_too_short(double h) const { return !(h > 1e-14 * larger(1e-2, abs(ws_.time))); }
+
   /// A shorter step. False: it is too short.
   CLUTCHWORK_INLINE bool shorten() {
     ++ws_.statistics.rejected;
     h_ = rounded_step(reach_ * (error_ < 1e300 ? larger(0.2, 0.9 * fifth_root_of_inverse(error_)) : 0.1));
     rejected_ = true;
     before_ = 0;
-    return h_ > 1e-14 * larger(1e-2, abs(ws_.time));
+    return !is_too_short(h_);
   }
 
   /// Whether rows fall into the step up to the share s.
