@@ -208,6 +208,10 @@ MENDED: dict[str, list[int]] = {
     "an event on the interpolant of a shaft without inertia": [36004377],
     "a row at a ratio that leaves zero": [36006385, 35010953, 37012072],
     "an impulse at a dead point that counted as one of the start": [37005603],
+    "dead points of two transmissions, while others turn fast": [42004052, 43000492, 40019256],
+    "a pole up to where time has no digits": [42005134, 43011321],
+    "the pole of a shaft without inertia up to where its speed has no digits": [38001866, 42018528],
+    "shares by a contact beside a dead point that others depend on": [38010634],
 }
 
 

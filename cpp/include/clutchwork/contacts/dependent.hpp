@@ -157,6 +157,27 @@ struct Shares {
     return value(bound) == 0 || (abs(value(bound)) < infinity && abs(value(use)) > 1);
   }
 
+  /// Contacts by which others turn many times faster than by themselves, as beside a dead point, are expressed in terms
+  /// of these: deflections would be differences of large ones.
+  void express() {
+    constexpr double most = 1e3;
+    const int m = set.rank;
+    for (int i = m; i < set.n; ++i) {
+      T* own = set.column + i * m;
+      int r = 0;
+      for (int k = 1; k < m; ++k) r = abs(value(own[k])) > abs(value(own[r])) ? k : r;
+      if (abs(value(own[r])) <= most) continue;
+      for (int k = 0; k < m; ++k) step[k] = own[k];
+      auto change = [&](T* of) {
+        const T share = of[r] / step[r];
+        axpy(m, -share, step, of);
+        of[r] = share;
+      };
+      for (int k = 0; k < set.n; ++k) change(set.column + k * m);
+      change(set.load);
+    }
+  }
+
   /// Load that is not held at a deflection; its size.
   double miss(const T* at) {
     for (int r = 0; r < set.rank; ++r) residual[r] = set.load[r];
@@ -168,19 +189,22 @@ struct Shares {
 
   bool newton_step() {
     const int m = set.rank;
-    T most = T(0);
+    T* whole = step;
     for (int e = 0; e < m * m; ++e) matrix[e] = T(0);
+    for (int a = 0; a < m; ++a) whole[a] = T(0);
     for (int i = 0; i < set.n; ++i) {
       const T at = use(i, deflection), k = stiffness(i, value(at) >= 0);
-      most = larger(most, k);
-      if (yields(i, at)) continue;
       const T* c = set.column + i * m;
+      for (int a = 0; a < m; ++a) whole[a] += k * c[a] * c[a];
+      if (yields(i, at)) continue;
       for (int a = 0; a < m; ++a) axpy(m, k * c[a], c, matrix + a * m);
     }
-    // those that one side alone holds yield at zero: towards it there is stiffness
-    if (value(most) == 0) most = free_stiffness;
-    // where all have yielded the deflection is not unique
-    for (int a = 0; a < m; ++a) matrix[a * m + a] += matrix[a * m + a] * T(1e-12) + most * T(1e-14);
+    // where all have yielded the deflection is not unique; those that one side alone holds yield at zero, and towards it
+    // there is stiffness
+    for (int a = 0; a < m; ++a) {
+      const T all = value(whole[a]) > 0 ? whole[a] : free_stiffness;
+      matrix[a * m + a] += matrix[a * m + a] * T(1e-12) + all * T(1e-14);
+    }
     for (int a = 0; a < m; ++a) step[a] = residual[a];
     if (!cholesky(m, matrix, m)) return false;
     forward_solve(m, matrix, m, step);
@@ -212,6 +236,7 @@ struct Shares {
 
   void solve() {
     double scale = 0;
+    express();
     free_stiffness = T(0);
     for (int i = 0; i < set.n; ++i) {
       if (value(set.upper[i]) < infinity) free_stiffness += T(0.5) * set.upper[i];

@@ -100,13 +100,15 @@ bool keeps_ties(const Ratios<T>& r) {
 }
 
 /// A transmission that has passed, since the point that was linearized last, a ratio at which the speed without inertia
-/// that follows from it is determined by nothing; -1: none. docs/theory/varying-ratios.md, shafts without inertia
+/// that follows from it is determined by nothing, or passes it `soon` [s], where nothing is left of its digits; -1: none.
+/// docs/theory/varying-ratios.md, shafts without inertia
 template <class T>
-int passed_over(const Ratios<T>& r) {
+int passed_over(const Ratios<T>& r, double soon) {
   for (int a = 0; a < r.n; ++a) {
     if (r.column[a] < 0) continue;
     const double first = value(r.follows[2 * a * r.n + a]), second = value(r.follows[(2 * a + 1) * r.n + a]);
-    if ((first - value(r.some.ratio[a]) * second) * (first - value(r.plain.ratio[a]) * second) <= 0) return a;
+    const double before = first - value(r.some.ratio[a]) * second, now = first - value(r.plain.ratio[a]) * second;
+    if (before * now <= 0 || abs(now) <= soon * abs(value(r.plain.slope[a]) * second)) return a;
   }
   return -1;
 }
@@ -147,6 +149,7 @@ int vanished_row(const Workspace<T>& ws) {
 /// speed without inertia follows from nothing.
 template <class T>
 bool note_lost(Workspace<T>& ws) {
+  constexpr double nearest = 1e-7;
   Ratios<T>& r = ws.ratios;
   if (r.n == 0) return false;
   const bool held = ws.held.n > 0;
@@ -154,7 +157,7 @@ bool note_lost(Workspace<T>& ws) {
   r.lost = held ? lost_tie(r) : -1;
   if (r.jammed < 0) r.jammed = turned_over(ws);
   if (r.jammed >= 0) return false;
-  r.jammed = passed_over(r);
+  r.jammed = passed_over(r, nearest * larger(1e-2, abs(ws.time)));
   return r.jammed >= 0;
 }
 
