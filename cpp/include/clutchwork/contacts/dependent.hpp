@@ -157,24 +157,21 @@ struct Shares {
     return value(bound) == 0 || (abs(value(bound)) < infinity && abs(value(use)) > 1);
   }
 
-  /// Contacts by which others turn many times faster than by themselves, as beside a dead point, are expressed in terms
-  /// of these: deflections would be differences of large ones.
+  /// Contacts that turn many times as fast as others, as beside a dead point, come first, and others are expressed in
+  /// terms of them: deflections would be differences of large ones.
   void express() {
     constexpr double most = 1e3;
     const int m = set.rank;
-    for (int i = m; i < set.n; ++i) {
-      T* own = set.column + i * m;
-      int r = 0;
-      for (int k = 1; k < m; ++k) r = abs(value(own[k])) > abs(value(own[r])) ? k : r;
-      if (abs(value(own[r])) <= most) continue;
-      for (int k = 0; k < m; ++k) step[k] = own[k];
-      auto change = [&](T* of) {
+    for (int e = set.n * m - 1; e >= 0; --e) {
+      if (abs(value(set.column[e])) <= most) continue;
+      const int r = e % m;
+      for (int k = 0; k < m; ++k) step[k] = set.column[e - r + k];
+      for (int k = 0; k <= set.n; ++k) {
+        T* of = k < set.n ? set.column + k * m : set.load;
         const T share = of[r] / step[r];
         axpy(m, -share, step, of);
         of[r] = share;
-      };
-      for (int k = 0; k < set.n; ++k) change(set.column + k * m);
-      change(set.load);
+      }
     }
   }
 
@@ -201,10 +198,7 @@ struct Shares {
     }
     // where all have yielded the deflection is not unique; those that one side alone holds yield at zero, and towards it
     // there is stiffness
-    for (int a = 0; a < m; ++a) {
-      const T all = value(whole[a]) > 0 ? whole[a] : free_stiffness;
-      matrix[a * m + a] += matrix[a * m + a] * T(1e-12) + all * T(1e-14);
-    }
+    for (int a = 0; a < m; ++a) matrix[a * m + a] += T(1e-13) * (value(whole[a]) > 0 ? whole[a] : free_stiffness);
     for (int a = 0; a < m; ++a) step[a] = residual[a];
     if (!cholesky(m, matrix, m)) return false;
     forward_solve(m, matrix, m, step);

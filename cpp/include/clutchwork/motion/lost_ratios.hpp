@@ -65,27 +65,18 @@ double tie_terms(const Ratios<T>& r, const Tied<T>& one, int t) {
 }
 
 /// A tie that has turned over, and nothing else, since the point that was linearized last: it has passed a ratio at
-/// which nothing is left of it; -1: none. docs/theory/varying-ratios.md (22)
+/// which nothing is left of it; -1: none. `near`: it may also be at that ratio, or within the round-off of its terms
+/// behind it. docs/theory/varying-ratios.md (22)
 template <class T>
-int turned_tie(const Ratios<T>& r) {
-  for (int t = 0; t < r.ties; ++t) {
-    const double mixed = tie_product(r, r.some, r.plain, t);
-    if (mixed >= 0) continue;
-    const double sizes = tie_product(r, r.some, r.some, t) * tie_product(r, r.plain, r.plain, t);
-    if (sizes - mixed * mixed <= 1e-12 * sizes) return t;
-  }
-  return -1;
-}
-
-/// The same where it may also be at that ratio, or within the round-off of its terms behind it.
-template <class T>
-int lost_tie(const Ratios<T>& r) {
+[[gnu::noinline]] int turned_tie(const Ratios<T>& r, bool near) {
   for (int t = 0; t < r.ties; ++t) {
     const int own = t * r.ties + t;
     const double mixed = tie_product(r, r.some, r.plain, t);
-    if (value(r.some.gram[own]) == 0 || (mixed > 0 && value(r.plain.gram[own]) != 0)) continue;
+    const bool stays = value(r.some.gram[own]) == 0 || (mixed > 0 && value(r.plain.gram[own]) != 0);
+    if (near ? stays : mixed >= 0) continue;
     const double before = tie_product(r, r.some, r.some, t), sizes = before * tie_product(r, r.plain, r.plain, t);
-    if (sizes - mixed * mixed <= 1e-12 * sizes + 1e-14 * before * tie_terms(r, r.plain, t)) return t;
+    const double round_off = near ? 1e-14 * before * tie_terms(r, r.plain, t) : 0.0;
+    if (sizes - mixed * mixed <= 1e-12 * sizes + round_off) return t;
   }
   return -1;
 }
@@ -100,29 +91,15 @@ bool keeps_ties(const Ratios<T>& r) {
 }
 
 /// A transmission that has passed, since the point that was linearized last, a ratio at which the speed without inertia
-/// that follows from it is determined by nothing, or passes it `soon` [s], where nothing is left of its digits; -1: none.
+/// that follows from it is determined by nothing, or that passes it `soon` [s]; -1: none.
 /// docs/theory/varying-ratios.md, shafts without inertia
 template <class T>
-int passed_over(const Ratios<T>& r, double soon) {
+[[gnu::noinline]] int passed_over(const Ratios<T>& r, double soon) {
   for (int a = 0; a < r.n; ++a) {
     if (r.column[a] < 0) continue;
-    const double first = value(r.follows[2 * a * r.n + a]), second = value(r.follows[(2 * a + 1) * r.n + a]);
-    const double before = first - value(r.some.ratio[a]) * second, now = first - value(r.plain.ratio[a]) * second;
-    if (before * now <= 0 || abs(now) <= soon * abs(value(r.plain.slope[a]) * second)) return a;
-  }
-  return -1;
-}
-
-/// A transmission that, from the point that was evaluated last, reaches such a ratio at once; -1: none. Asked where
-/// steps have collapsed, which they may do well before.
-template <class T>
-int passes_at_once(const Ratios<T>& r) {
-  constexpr double soon = 1e-4;
-  for (int a = 0; a < r.n; ++a) {
-    if (r.column[a] < 0) continue;
-    const double second = value(r.follows[(2 * a + 1) * r.n + a]);
-    const double share = value(r.follows[2 * a * r.n + a]) - value(r.plain.ratio[a]) * second;
-    if (!(abs(share) > soon * abs(value(r.plain.slope[a]) * second))) return a;
+    const double now = value(share_of_follower(r, r.plain, a, a)), way = value(r.plain.slope[a]);
+    if (!(abs(now) > soon * abs(way * value(r.follows[(2 * a + 1) * r.n + a])))) return a;
+    if (value(share_of_follower(r, r.some, a, a)) * now <= 0) return a;
   }
   return -1;
 }
@@ -149,12 +126,13 @@ int vanished_row(const Workspace<T>& ws) {
 /// speed without inertia follows from nothing.
 template <class T>
 bool note_lost(Workspace<T>& ws) {
+  // of the time: where nothing is left of the digits of such a speed
   constexpr double nearest = 1e-7;
   Ratios<T>& r = ws.ratios;
   if (r.n == 0) return false;
   const bool held = ws.held.n > 0;
-  r.reversed = held ? turned_tie(r) : -1;
-  r.lost = held ? lost_tie(r) : -1;
+  r.reversed = held ? turned_tie(r, false) : -1;
+  r.lost = held ? turned_tie(r, true) : -1;
   if (r.jammed < 0) r.jammed = turned_over(ws);
   if (r.jammed >= 0) return false;
   r.jammed = passed_over(r, nearest * larger(1e-2, abs(ws.time)));
