@@ -172,19 +172,42 @@ def test_a_set_whose_load_passes_zero_lets_go_when_it_does(rtol: float) -> None:
     np.testing.assert_allclose(function.gradient().matrix, [expected, expected], rtol=1e-7)
 
 
-@pytest.mark.parametrize("rtol", [1e-6, 1e-9])
-def test_a_screw_that_is_pressed_against_a_stop_lets_go_when_its_torque_turns(rtol: float) -> None:
-    # seed 220235: the stop holds all of any load one way, so that no bound of the screw has anything left
+def pressed() -> cw.Driveline:
+    """A screw that is pressed against a stop, by a torque that turns."""
     d = cw.Driveline("pressed")
     a, m = d.shaft("a", inertia=0.1, angle=0.03), d.mass("m", mass=50.0)
     d.add(cw.Torque("t", shaft=a, torque=cw.Ramp(height=25.0, duration=0.5, start=0.1, offset=-10.0)))
     d.add(cw.EndStop("stop", follower=a, lower=-0.1, upper=0.03))
     d.add(cw.Leadscrew("screw", screw=a, mass=m, lead=0.035, radius=0.074, friction_coefficient=0.0283))
-    names = ["t.torque.offset", "t.torque.height", "t.torque.duration", "t.torque.start"]
+    return d
+
+
+RAMP = ["t.torque.offset", "t.torque.height", "t.torque.duration", "t.torque.start"]
+
+
+# seed 220235: the stop holds all of any load one way, so that no bound of the screw has anything left
+@pytest.mark.parametrize("rtol", [1e-6, 1e-9])
+def test_a_screw_that_is_pressed_against_a_stop_lets_go_when_its_torque_turns(rtol: float) -> None:
     of = [cw.break_away("stop"), cw.break_away("screw")]
-    found = cw.differentiable(d, 0.35, of=of, by=names, rtol=rtol, atol=rtol / 100).gradient()
+    found = cw.differentiable(pressed(), 0.35, of=of, by=RAMP, rtol=rtol, atol=rtol / 100).gradient()
     expected = [-0.5 / 25.0, -0.5 * 10.0 / 25.0**2, 10.0 / 25.0, 1.0]
     np.testing.assert_allclose(found.matrix, [expected, expected], rtol=1e-7)
+
+
+# one of both loads stays: the larger one of both, or the smaller one
+@pytest.mark.parametrize("other", [3.0, 1.0, -1.0, -3.0])
+def test_two_stops_let_go_when_the_sum_of_both_loads_turns(other: float) -> None:
+    d = pressed()
+    a, b = d.shafts[0], d.shaft("b", inertia=0.1, angle=0.03)
+    d.add(cw.Torque("beside", shaft=b, torque=other))
+    d.add(cw.EndStop("second", follower=b, lower=-0.1, upper=0.03))
+    law = cw.Coulomb(static=0.1, kinetic=0.1)
+    d.add(cw.Clutch("joins", base=a, follower=b, friction=law, gain=200.0, pressure=1.0, locked=True))
+    found = cw.differentiable(d, 0.5, of=[cw.break_away("stop")], by=[*RAMP, "beside.torque"], **TIGHT).gradient()
+    risen = 10.0 - other
+    expected = [-0.5 / 25.0, -0.5 * risen / 25.0**2, risen / 25.0, 1.0, -0.5 / 25.0]
+    assert found.values[0] == pytest.approx(0.1 + 0.5 * risen / 25.0, rel=1e-9)
+    np.testing.assert_allclose(found.matrix, [expected], rtol=1e-7)
 
 
 def test_a_set_that_is_closed_without_load_has_a_side_for_each_sign_of_it() -> None:

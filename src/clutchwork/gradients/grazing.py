@@ -73,6 +73,12 @@ def limits() -> tuple[int, ...]:
 
 
 @cache
+def sets() -> tuple[int, ...]:
+    """Numbers in the core of the guards of contacts that hold together."""
+    return tuple(number for number, (name, _) in enumerate(derivatives().guards) if name == "set")
+
+
+@cache
 def _staying() -> tuple[int, ...]:
     return tuple(number for number, (name, _) in enumerate(derivatives().guards) if name in STAYS)
 
@@ -265,12 +271,20 @@ def noted(system: System, grazes: Array, decided: Array) -> Iterator[str]:
 
 
 def passed_unseen(system: System, grazes: Array) -> Iterator[tuple[float, str]]:
-    """Slips that have passed zero with which a torque jumps, where no event is: from then on [s] nothing is known."""
-    for time, kind, number, _, _ in grazes.tolist():
+    """What happens that nothing is known of: from then on [s] there are no derivatives.
+
+    Slips that have passed zero with which a torque jumps, where no event is; sets of contacts that let go, where what
+    they hold does not tell how that moves.
+    """
+    for time, kind, number, index, _ in grazes.tolist():
         if kind == UNSEEN:
             name = component(system, int(number), UNSEEN)
             what = f"the torque of {name} jumps with the sign of its slip at {time:.9g} s, where no event is"
             yield time, f"{what}; take a law that sticks, such as Stribeck, for derivatives"
+        elif kind in sets() and index == 0.0:
+            name = component(system, int(number), int(kind))
+            what = f"{name} lets go at {time:.9g} s with others, and what they hold does not tell how that moves"
+            yield time, f"{what}; give one of them a capacity of its own"
 
 
 def component(system: System, number: int, kind: int) -> str:

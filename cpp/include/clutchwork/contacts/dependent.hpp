@@ -157,21 +157,27 @@ struct Shares {
     return value(bound) == 0 || (abs(value(bound)) < infinity && abs(value(use)) > 1);
   }
 
-  /// Contacts that turn many times as fast as others, as beside a dead point, come first, and others are expressed in
-  /// terms of them: deflections would be differences of large ones.
-  void express() {
+  /// Columns and load in terms of other contacts, where some are many times as fast as those that are the basis, as
+  /// beside a dead point: their torques would be stiffness times the difference of two large deflections. The shares
+  /// are the same; `column` and `load` of the set are left in the new basis.
+  void change_basis() {
     constexpr double most = 1e3;
     const int m = set.rank;
-    for (int e = set.n * m - 1; e >= 0; --e) {
-      if (abs(value(set.column[e])) <= most) continue;
-      const int r = e % m;
-      for (int k = 0; k < m; ++k) step[k] = set.column[e - r + k];
+    // each round multiplies the determinant of the basis by more than that
+    while (true) {
+      int pivot = 0;
+      for (int e = 1; e < set.n * m; ++e) pivot = abs(value(set.column[e])) > abs(value(set.column[pivot])) ? e : pivot;
+      if (!(abs(value(set.column[pivot])) > most)) return;
+      const int r = pivot % m;
+      T* own = set.column + (pivot - r);
       for (int k = 0; k <= set.n; ++k) {
         T* of = k < set.n ? set.column + k * m : set.load;
-        const T share = of[r] / step[r];
-        axpy(m, -share, step, of);
+        if (of == own) continue;
+        const T share = of[r] / own[r];
+        axpy(m, -share, own, of);
         of[r] = share;
       }
+      for (int k = 0; k < m; ++k) own[k] = T(k == r);
     }
   }
 
@@ -186,19 +192,22 @@ struct Shares {
 
   bool newton_step() {
     const int m = set.rank;
-    T* whole = step;
     for (int e = 0; e < m * m; ++e) matrix[e] = T(0);
-    for (int a = 0; a < m; ++a) whole[a] = T(0);
     for (int i = 0; i < set.n; ++i) {
       const T at = use(i, deflection), k = stiffness(i, value(at) >= 0);
       const T* c = set.column + i * m;
-      for (int a = 0; a < m; ++a) whole[a] += k * c[a] * c[a];
-      if (yields(i, at)) continue;
-      for (int a = 0; a < m; ++a) axpy(m, k * c[a], c, matrix + a * m);
+      for (int a = 0; a < m && !yields(i, at); ++a) axpy(m, k * c[a], c, matrix + a * m);
     }
-    // where all have yielded the deflection is not unique; those that one side alone holds yield at zero, and towards it
-    // there is stiffness
-    for (int a = 0; a < m; ++a) matrix[a * m + a] += T(1e-13) * (value(whole[a]) > 0 ? whole[a] : free_stiffness);
+    // where all have yielded the deflection is not unique: a little of the stiffness before that, of each component for
+    // itself, whose units differ; where none is left on this side, of a contact without bound
+    for (int a = 0; a < m; ++a) {
+      T all = T(0);
+      for (int i = 0; i < set.n; ++i) {
+        const T c = set.column[i * m + a];
+        all += stiffness(i, value(use(i, deflection)) >= 0) * c * c;
+      }
+      matrix[a * m + a] += T(1e-13) * (value(all) > 0 ? all : free_stiffness);
+    }
     for (int a = 0; a < m; ++a) step[a] = residual[a];
     if (!cholesky(m, matrix, m)) return false;
     forward_solve(m, matrix, m, step);
@@ -230,7 +239,7 @@ struct Shares {
 
   void solve() {
     double scale = 0;
-    express();
+    change_basis();
     free_stiffness = T(0);
     for (int i = 0; i < set.n; ++i) {
       if (value(set.upper[i]) < infinity) free_stiffness += T(0.5) * set.upper[i];

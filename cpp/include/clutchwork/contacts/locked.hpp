@@ -437,8 +437,8 @@ template <class T>
 }
 
 /// What a set has left that holds any multiple of its load or none, whatever its limit: the least of what the bounds of
-/// its members have left that are not reached, of the size of the load; below zero where it does not hold. Where those
-/// without loads hold all of it, the load itself [N m], which is zero where they let go.
+/// its members have left that are not reached, of the size of the load; below zero where it does not hold, infinite
+/// where all are reached: others hold all of any load.
 template <class T>
 [[gnu::noinline]] T set_slack(Workspace<T>& ws, int k, const T* carried, const T* load) {
   const DependentSet<T> set = dependent_set(ws, k, carried, T(0));
@@ -452,28 +452,34 @@ template <class T>
   for (int j = set.n; j < set.n + 2 * limit.n_loads; ++j) {
     if (limit.place[j] >= 0 && value(limit.x[j]) > reached && value(limit.x[j]) < value(least)) least = limit.x[j];
   }
-  if (!(value(least) < infinity)) {
-    T most = T(0);
-    for (int r = 0; r < set.rank; ++r) most = larger(most, abs(set.load[r]));
-    return most;
-  }
-  return least / (factor * limit.size);
+  return value(least) < infinity ? least / (factor * limit.size) : least;
 }
 
-/// What a set without loads misses of its load along the way in which it gives way, at most zero [N m]. It falls evenly
-/// where the factor jumps: of a freewheel and a contact without capacity beside it, whose load passes zero.
-template <class T>
-[[gnu::noinline]] T set_deficit(Workspace<T>& ws, int k, const T* carried) {
-  const DependentSet<T> set = dependent_set(ws, k, carried, T(0));
-  LimitLoad<T> limit = limit_of(ws, set);
-  const T room = limit.solve() - T(1);
-  double most = 0;
-  int steepest = 0;
+/// What a set misses of its load along the way in which it gives way, at most zero [N m], by what its limit has left
+/// and the price of each of its members.
+template <class T, class Price>
+T deficit_of(const DependentSet<T>& set, const T& room, const T& size, Price&& price) {
+  T most = T(0);
   for (int i = 0; i < set.n; ++i) {
-    const double price = abs(value(limit.price[i]));
-    if (price > most) most = price, steepest = i;
+    if (abs(value(price(i))) > value(most)) most = abs(price(i));
   }
-  return most > 0 ? room * limit.size / abs(limit.price[steepest]) : T(0);
+  return value(most) > 0 ? room * size / most : T(0);
+}
+
+/// The same of set k. It falls evenly where the factor jumps: of a freewheel and a contact without capacity beside it,
+/// or a stop and a screw, whose load passes zero.
+template <class T>
+[[gnu::noinline]] T set_deficit(Workspace<T>& ws, int k, const T* carried, const T* load) {
+  const DependentSet<T> set = dependent_set(ws, k, carried, T(0));
+  if (ws.sys.loads == 0 || !holds_loads(ws)) {
+    LimitLoad<T> limit = limit_of(ws, set);
+    const T room = limit.solve() - T(1);
+    return deficit_of(set, room, limit.size, [&](int i) { return limit.price[i]; });
+  }
+  outer_loads(ws, k, load, carried);
+  LoadedLimit<T> limit = loaded_limit(ws, set, ws.held.set_member + ws.held.set_first[k], T(0));
+  const T room = solve_loaded(limit) - T(1);
+  return deficit_of(set, room, limit.size, [&](int i) { return limit.price_of(i); });
 }
 
 /// The largest factor of the load of a set that is at its limit. Members without friction of their own hold a multiple

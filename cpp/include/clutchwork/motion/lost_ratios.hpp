@@ -64,19 +64,31 @@ double tie_terms(const Ratios<T>& r, const Tied<T>& one, int t) {
   return sum;
 }
 
-/// A tie that has turned over, and nothing else, since the point that was linearized last: it has passed a ratio at
-/// which nothing is left of it; -1: none. `near`: it may also be at that ratio, or within the round-off of its terms
-/// behind it. docs/theory/varying-ratios.md (22)
+/// Whether tie t is along what it was at the point that was linearized last, up to its sign and a round-off.
 template <class T>
-[[gnu::noinline]] int turned_tie(const Ratios<T>& r, bool near) {
+[[gnu::noinline]] bool is_parallel(const Ratios<T>& r, int t, double round_off) {
+  const double mixed = tie_product(r, r.some, r.plain, t), before = tie_product(r, r.some, r.some, t);
+  const double sizes = before * tie_product(r, r.plain, r.plain, t);
+  return sizes - mixed * mixed <= 1e-12 * sizes + round_off * before;
+}
+
+/// A tie that has turned over, and nothing else, since the point that was linearized last: it has passed a ratio at
+/// which nothing is left of it; -1: none. docs/theory/varying-ratios.md (22)
+template <class T>
+int turned_tie(const Ratios<T>& r) {
+  for (int t = 0; t < r.ties; ++t) {
+    if (tie_product(r, r.some, r.plain, t) < 0 && is_parallel(r, t, 0)) return t;
+  }
+  return -1;
+}
+
+/// The same where it may also be at that ratio, or within the round-off of its terms behind it.
+template <class T>
+int lost_tie(const Ratios<T>& r) {
   for (int t = 0; t < r.ties; ++t) {
     const int own = t * r.ties + t;
-    const double mixed = tie_product(r, r.some, r.plain, t);
-    const bool stays = value(r.some.gram[own]) == 0 || (mixed > 0 && value(r.plain.gram[own]) != 0);
-    if (near ? stays : mixed >= 0) continue;
-    const double before = tie_product(r, r.some, r.some, t), sizes = before * tie_product(r, r.plain, r.plain, t);
-    const double round_off = near ? 1e-14 * before * tie_terms(r, r.plain, t) : 0.0;
-    if (sizes - mixed * mixed <= 1e-12 * sizes + round_off) return t;
+    const bool passed = tie_product(r, r.some, r.plain, t) <= 0 || value(r.plain.gram[own]) == 0;
+    if (value(r.some.gram[own]) != 0 && passed && is_parallel(r, t, 1e-14 * tie_terms(r, r.plain, t))) return t;
   }
   return -1;
 }
@@ -91,15 +103,31 @@ bool keeps_ties(const Ratios<T>& r) {
 }
 
 /// A transmission that has passed, since the point that was linearized last, a ratio at which the speed without inertia
-/// that follows from it is determined by nothing, or that passes it `soon` [s]; -1: none.
+/// that follows from it is determined by nothing, or of whose share in its row round-off leaves too little; -1: none.
 /// docs/theory/varying-ratios.md, shafts without inertia
 template <class T>
-[[gnu::noinline]] int passed_over(const Ratios<T>& r, double soon) {
+int passed_over(const Ratios<T>& r) {
+  constexpr double least = 1e-7;
   for (int a = 0; a < r.n; ++a) {
     if (r.column[a] < 0) continue;
-    const double now = value(share_of_follower(r, r.plain, a, a)), way = value(r.plain.slope[a]);
-    if (!(abs(now) > soon * abs(way * value(r.follows[(2 * a + 1) * r.n + a])))) return a;
-    if (value(share_of_follower(r, r.some, a, a)) * now <= 0) return a;
+    const double first = value(r.follows[2 * a * r.n + a]), second = value(r.follows[(2 * a + 1) * r.n + a]);
+    const double before = first - value(r.some.ratio[a]) * second, along = value(r.plain.ratio[a]) * second;
+    const double now = first - along;
+    if (before * now <= 0 || abs(now) <= least * (abs(first) + abs(along))) return a;
+  }
+  return -1;
+}
+
+/// A transmission that, from the point that was evaluated last, reaches such a ratio at once; -1: none. Asked where
+/// steps have collapsed, which they may do well before.
+template <class T>
+int passes_at_once(const Ratios<T>& r) {
+  constexpr double soon = 1e-4;
+  for (int a = 0; a < r.n; ++a) {
+    if (r.column[a] < 0) continue;
+    const double second = value(r.follows[(2 * a + 1) * r.n + a]);
+    const double share = value(r.follows[2 * a * r.n + a]) - value(r.plain.ratio[a]) * second;
+    if (!(abs(share) > soon * abs(value(r.plain.slope[a]) * second))) return a;
   }
   return -1;
 }
@@ -126,16 +154,14 @@ int vanished_row(const Workspace<T>& ws) {
 /// speed without inertia follows from nothing.
 template <class T>
 bool note_lost(Workspace<T>& ws) {
-  // of the time: where nothing is left of the digits of such a speed
-  constexpr double nearest = 1e-7;
   Ratios<T>& r = ws.ratios;
   if (r.n == 0) return false;
   const bool held = ws.held.n > 0;
-  r.reversed = held ? turned_tie(r, false) : -1;
-  r.lost = held ? turned_tie(r, true) : -1;
+  r.reversed = held ? turned_tie(r) : -1;
+  r.lost = held ? lost_tie(r) : -1;
   if (r.jammed < 0) r.jammed = turned_over(ws);
   if (r.jammed >= 0) return false;
-  r.jammed = passed_over(r, nearest * larger(1e-2, abs(ws.time)));
+  r.jammed = passed_over(r);
   return r.jammed >= 0;
 }
 

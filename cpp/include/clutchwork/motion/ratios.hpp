@@ -387,6 +387,30 @@ int hardest_contact(const Workspace<T>& ws) {
   return hardest;
 }
 
+/// A transmission whose row counted as none at the start of a step and would now, by ties.wanted, stop by a jump what
+/// it joins, which moved as in `missed`; -1: none. docs/theory/varying-ratios.md, drift
+template <class Form, class T = typename Form::Scalar>
+[[gnu::noinline]] int caught_tie(const Form& form, const T* missed) {
+  const Workspace<T>& ws = form.ws;
+  const Ratios<T>& r = ws.ratios;
+  const int nz = form.nz();
+  for (int t = 0; t < r.ties && r.tie[t] >= 0; ++t) {
+    if (value(r.some.gram[t * r.ties + t]) != 0) continue;
+    double most = 0, fastest = 0;
+    for (int round = 0; round < 2; ++round) {
+      for (int i = 0; i < nz; ++i) {
+        double along = 0;
+        for (int k = 0; k < r.rows; ++k) along += value(r.plain.share[t * r.rows + k] * r.along[k * nz + i]);
+        if (round == 0) most = larger(most, abs(along));
+        if (round == 1 && abs(along) > 1e-9 * most) fastest = larger(fastest, abs(value(missed[i])));
+      }
+    }
+    const double moved = most * abs(value(r.plain.wanted[t]));
+    if (moved > 1e3 * ws.guard.zero + most_drift(ws) * fastest) return r.tie[t];
+  }
+  return -1;
+}
+
 /// Speeds y brought onto the ties at the point that was evaluated last, the momentum across them untouched. A
 /// transmission that nothing can keep there, for what ties its speeds is prescribed, or that would have to stop by a
 /// jump what has left its ratio; -1: none. `before`: at the start of a step, which may lead to rest.
@@ -410,20 +434,14 @@ int settle_ties(Form& form, T* y, const T* before = nullptr) {
   solve_ties(r, w, w.wanted);
   T* missed = w.push;
   for (int i = 0; i < nz; ++i) missed[i] = y[i];
-  // one that counted as none at the start of the step knows of those alone that it moves
-  bool begins = false;
   for (int t = 0; t < r.ties; ++t) {
     for (int k = 0; k < r.rows; ++k) axpy(nz, w.share[t * r.rows + k] * w.wanted[t], r.along + k * nz, y);
-    begins = begins || (value(r.some.gram[t * r.ties + t]) == 0 && value(w.wanted[t]) != 0);
   }
-  begins = begins && before != nullptr && before != y;
   double fastest = 0, moved = 0;
   for (int i = 0; i < nz; ++i) {
-    const double step = abs(value(y[i] - missed[i]));
-    moved = larger(moved, step);
-    if (begins && step == 0) continue;
     fastest = larger(fastest, abs(value(missed[i])));
     if (before != nullptr) fastest = larger(fastest, abs(value(before[i])));
+    moved = larger(moved, abs(value(y[i] - missed[i])));
   }
   for (int a = 0; a < r.n; ++a) {
     if (r.column[a] < 0) continue;
@@ -438,6 +456,11 @@ int settle_ties(Form& form, T* y, const T* before = nullptr) {
     if (abs(first - second) > 10 * ws.guard.zero + most * (abs(first) + abs(second))) return a;
   }
   ws.ratios.stopped = -1;
+  // at the start of a phase, and with derivatives, no point before is known
+  if constexpr (!has_tangents<T>) {
+    const int caught = before != nullptr && before != y ? caught_tie(form, missed) : -1;
+    if (caught >= 0) return caught;
+  }
   if (!(moved > 1e3 * ws.guard.zero + most_drift(ws) * fastest)) return -1;
   const int hardest = hardest_tie(r);
   if (hardest < 0) ws.ratios.stopped = hardest_contact(ws);

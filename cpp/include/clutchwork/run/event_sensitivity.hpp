@@ -299,23 +299,31 @@ bool has_jumped(const Workspace<T>& ws, double guard, double scale) {
   return guard < -least * scale && ws.time - ws.moved.here_time <= 1e-12 * (1 + abs(ws.time));
 }
 
-/// How a hit moves whose guard jumps there, and its rate, by a cubic through what is left shortly before or behind it:
-/// from as far as that is smooth, since round-off hides how much is left near by.
+/// How a hit moves whose guard jumps there, and its rate, by a cubic through what is left shortly before it, or behind
+/// it where that is infinite before: from as far as that is smooth, since round-off hides how much is left near by.
+/// Without a rate nothing is known.
 template <class G, class Form, class T = typename Form::Scalar>
 T sudden_shift(Form& form, Step<Form>& step, const Hit& hit, const T* velocity, double& rate) {
   constexpr double farthest = 1e-2, closest = 1e-4, smooth = 1e-5;
   Workspace<T>& ws = form.ws;
-  const double side = G::told_from(ws);
+  double side = G::told_from(ws);
   T *probe = step.k(1), guard = T(0);
   double least = infinity;
   for (double share = farthest; share > 0.5 * closest && least > smooth; share *= 0.1) {
     const double reach = side * share * larger(ws.moved.span, 1e-9);
     T left[4];
+    bool tells = true;
     for (int k = 0; k < 4; ++k) {
       const double later = (k + 1) * reach;
       for (int i = 0; i < form.n(); ++i) probe[i] = step.y0()[i] + velocity[i] * later;
       ws.in.time = -infinity;
-      left[k] = G::left(form, step, hit, ws.time + later, probe);
+      left[k] = G::left(form, step, hit, ws.time + later, probe, side);
+      tells = tells && value(left[k]) < infinity;
+    }
+    if (!tells) {
+      // once more from the farthest on
+      side = 1, share = 10 * farthest, least = infinity;
+      continue;
     }
     auto sum = [&](double a, double b, double c, double d) {
       return T(a) * left[0] + T(b) * left[1] + T(c) * left[2] + T(d) * left[3];

@@ -519,7 +519,7 @@ class Phase : public StepSize<typename Form::Scalar> {
       }
     }
     if constexpr (Form::full) {
-      // towards a pole steps shrink without being rejected
+      // towards a pole of a transmission steps shrink without being rejected; cut and landed ones leave a longer one
       if (h_ < reach_ && is_too_short(h_)) return collapse();
     }
     if (ws_.guard.n_chattering > 0 && chatters(ws_)) leave(Status::chatter);

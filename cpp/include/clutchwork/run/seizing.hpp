@@ -58,11 +58,9 @@ bool stops_running_away(Phase& phase) {
   return true;
 }
 
-/// A step has become too short, at its start. `finite`: its error was a number. The inputs are those of its last stage.
+/// A step has become too short, at its start. `finite`: its error was a number. The inputs may be those of a stage.
 template <class Phase, class T = typename Phase::Scalar>
 [[gnu::noinline]] void end_collapsed(Phase& phase, bool finite) {
-  // s before a ratio that loses a speed, within which steps may collapse
-  constexpr double soon = 1e-4;
   Workspace<T>& ws = phase.ws();
   ws.in.time = -infinity;
   if constexpr (Phase::FormType::full) {
@@ -72,7 +70,7 @@ template <class Phase, class T = typename Phase::Scalar>
     if (ratios.n > 0) {
       evaluate(form, ws.time, phase.taken_step().y0(), phase.taken_step().slope());
       lost = vanished_row(form.ws);
-      if (lost < 0) lost = passed_over(ratios, soon);
+      if (lost < 0) lost = passes_at_once(ratios);
     }
     if (lost >= 0) return jam(phase, lost);
     if (ws.loads.n_sliding > 0 && stops_running_away(phase)) return;

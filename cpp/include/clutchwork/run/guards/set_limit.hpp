@@ -133,11 +133,12 @@ struct SetLimit : OwnScale {
   static double told_from(const Workspace<T>& ws) {
     return ws.sys.loads > 0 && holds_loads(ws) ? -1.0 : 1.0;
   }
+  /// `side`: behind it, 1, or before.
   template <class Form, class T = typename Form::Scalar>
-  static T left(Form& form, Step<Form>& step, const Hit& hit, double t, const T* y) {
+  static T left(Form& form, Step<Form>& step, const Hit& hit, double t, const T* y, double side) {
     Workspace<T>& ws = form.ws;
     see_torques(form, step, t, y);
-    if (told_from(ws) > 0) return set_deficit(ws, hit.index, ws.observed.carried);
+    if (side > 0) return set_deficit(ws, hit.index, ws.observed.carried, ws.loads.now);
     return set_slack(ws, hit.index, ws.observed.carried, ws.loads.now);
   }
   /// Whether it is such a one, by its guard at the limit, or nearly so: its load is next to none of that before.
