@@ -274,7 +274,7 @@ def passed_unseen(system: System, grazes: Array) -> Iterator[tuple[float, str]]:
     """What happens that nothing is known of: from then on [s] there are no derivatives.
 
     Slips that have passed zero with which a torque jumps, where no event is; sets of contacts that let go, where what
-    they hold does not tell how that moves.
+    they hold does not show how that moves.
     """
     for time, kind, number, index, _ in grazes.tolist():
         if kind == UNSEEN:
@@ -283,7 +283,7 @@ def passed_unseen(system: System, grazes: Array) -> Iterator[tuple[float, str]]:
             yield time, f"{what}; take a law that sticks, such as Stribeck, for derivatives"
         elif kind in sets() and index == 0.0:
             name = component(system, int(number), int(kind))
-            what = f"{name} lets go at {time:.9g} s with others, and what they hold does not tell how that moves"
+            what = f"{name} lets go at {time:.9g} s with others, and what they hold does not show how that moves"
             yield time, f"{what}; give one of them a capacity of its own"
 
 
