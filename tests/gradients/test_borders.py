@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 import clutchwork as cw
-from clutchwork.gradients.grazing import AT, BY_NAME
+from clutchwork.gradients.grazing import AT, BY_NAME, passed_unseen, sets
 from support import by_differences
 
 COULOMB = cw.Coulomb(static=0.12, kinetic=0.1)
@@ -192,6 +192,15 @@ def test_a_screw_that_is_pressed_against_a_stop_lets_go_when_its_torque_turns(rt
     found = cw.differentiable(pressed(), 0.35, of=of, by=RAMP, rtol=rtol, atol=rtol / 100).gradient()
     expected = [-0.5 / 25.0, -0.5 * 10.0 / 25.0**2, 10.0 / 25.0, 1.0]
     np.testing.assert_allclose(found.matrix, [expected, expected], rtol=1e-7)
+
+
+def test_a_set_that_shows_nothing_of_when_it_lets_go_has_no_derivatives_behind_that() -> None:
+    # time, guard, component, rate, and by how much it parts from others: a rate of zero is one that was not found
+    system, (guard,) = pressed().assemble(), sets()
+    lets_go = np.array([[0.3, guard, 2.0, 0.0, 0.0], [0.3, guard, 2.0, 5.0, 0.0]])
+    ((time, why),) = passed_unseen(system, lets_go)
+    assert time == 0.3
+    assert "stop lets go at 0.3 s with others" in why
 
 
 # one of both loads stays: the larger one of both, or the smaller one
