@@ -98,6 +98,26 @@ def test_a_ratio_that_varies_has_the_jerk_of_its_energy() -> None:
             assert found == pytest.approx(wanted, rel=100.0 * rtol), (seed, rtol)
 
 
+def test_the_friction_of_a_pump_bends_where_its_pressure_difference_passes_zero() -> None:
+    """The torque is straight before and behind, and so steep that a rounded bend would be far shorter than a step."""
+    inertia, displacement, efficiency, rise, time, low = 0.05, 8e-6, 0.6, 2e6, 0.02, -6e5
+    d = cw.Driveline("pump")
+    s = d.shaft("s", inertia=inertia, speed=200.0)
+    outlet = cw.Ramp(height=rise, duration=time, start=0.03, offset=low)
+    values: dict[str, float] = {"displacement": displacement, "efficiency": efficiency, "slow": 1e-6}
+    d.add(cw.PumpTorque("p", shaft=s, outlet=outlet, **values))
+    d.add(cw.Torque("t", shaft=s, torque=5.0))
+    found = cw.differentiable(d, 0.1, of=cw.squared_jerk("s"), by=["p.outlet.offset"])
+    value, matrix = found.value_and_jacobian(found.x0)
+    slope = rise / time
+    below, above = (
+        (displacement * slope * share / (2.0 * np.pi * inertia)) ** 2
+        for share in (2.0 - 1.0 / efficiency, 1.0 / efficiency)
+    )
+    assert value[0] == pytest.approx(below * -low / slope + above * (time + low / slope), rel=1e-9)
+    assert matrix[0, 0] == pytest.approx((above - below) / slope, rel=1e-6)
+
+
 def test_a_prescribed_speed_that_bends_has_no_jerk_but_between_its_bends() -> None:
     """The acceleration of a speed in straight lines jumps; the rows have both sides of each jump."""
     d = cw.Driveline("lines")

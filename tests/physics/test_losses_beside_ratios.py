@@ -107,3 +107,29 @@ def test_a_lossy_gear_at_a_shaft_that_follows() -> None:
     same = plain.simulate(1.0, dt=0.01, **FINE)
     assert np.max(np.abs(run["c.speed"] - same["c.speed"])) < CLOSE * 20.0
     assert abs(run.energy.residual) <= 1e-8 * run.energy.turnover
+
+
+def test_a_clutch_of_a_ratio_passes_zero_slip_beside_locked_contacts_that_depend_on_one_another() -> None:
+    """A brake and a limited slip hold a shaft together; they have no part in a mass that a spring drives on."""
+    d = cw.Driveline("apart")
+    m, end = d.mass("m", mass=11.5, speed=8.33), d.mass("end", mass=6.58)
+    d.add(cw.ElasticBacklash("k", base=m, follower=end, stiffness=41.7e3, gap=0.006, initial_twist=-0.0222))
+    capacity = 115.0
+    d.add(cw.VariableRatio("v", input=m, output=d.housing, ratio=1.0, capacity=capacity, locked=False))
+    a, b = d.shaft("a", inertia=1.0), d.shaft("b", inertia=1.0)
+    d.add(cw.LimitedSlip("lsd", carrier=a, left=b, right=d.housing))
+    d.add(
+        cw.Clutch(
+            "brake",
+            base=d.housing,
+            follower=a,
+            friction=cw.Coulomb(static=0.1, kinetic=0.1),
+            gain=1.0,
+            normal_force=1.0,
+        )
+    )
+    run = d.simulate(0.6)
+    passed = run.events.of("v")[0]
+    assert (passed.before, passed.after) == ("forward", "backward")
+    assert np.max(np.abs(run["v.torque"])) <= capacity * (1.0 + 1e-9)
+    assert abs(run.energy.residual) <= 1e-6 * run.energy.turnover

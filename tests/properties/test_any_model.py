@@ -212,6 +212,11 @@ MENDED: dict[str, list[int]] = {
     "a pole up to where time has no digits": [42005134, 43011321],
     "the pole of a shaft without inertia up to where its speed has no digits": [38001866, 42018528],
     "shares by a contact beside a dead point that others depend on": [38010634],
+    "a motion that dies away and parts what is locked by round-off": [44010467, 44012928, 44005905],
+    "a clutch of a varying ratio that held more than it can beside a set": [44002936],
+    "a motor whose limit jumps where its shaft passes rest": [44017048],
+    "a coupling that round-off left with the wrong shaft as the fast one": [44010740],
+    "a naive law that took the sign of round-off": [44016361],
 }
 
 
@@ -238,6 +243,23 @@ MENDED_BESIDE: dict[tuple[str, str], list[int]] = {
 )
 def test_what_disagreed_with_models_once(only: str, seed: int) -> None:
     assert not [fault.words for fault in judge.faults(KEPT[str(seed)], seed, 1, only)]
+
+
+def test_a_start_that_contradicts_a_ratio_is_no_fault() -> None:
+    """With speeds of both sides it jams where it starts, which is right; by one of them it would be wrong."""
+    ratio = {"type": "sine", "amplitude": 2.0, "frequency": 1.0}
+    made: Any = {
+        "shaft": [{"name": "a", "inertia": 0.2, "speed": 0.0}, {"name": "b", "inertia": 0.2, "speed": 3.0}],
+        "mass": [],
+        "element": [{"name": "v", "type": "variable_gear", "input": "a", "output": "b", "ratio": ratio}],
+        "simulation": {"t_end": 0.2, "t_start": 0.1},
+    }
+    run = agree.run(made)
+    assert run.status == "jammed"
+    assert not judge.ending(made, run)
+    del made["shaft"][0]["speed"]
+    assert agree.run(made).status == "done"
+    assert judge.ending(made, run)
 
 
 def test_a_jam_beside_a_light_shaft_has_its_own_sentence() -> None:

@@ -223,7 +223,7 @@ def test_a_ratio_that_contradicts_given_speeds_at_a_later_start_jams(kind: str) 
         gear("two", a, 3.0)
     if kind == "singular":
         d.add(cw.Planetary("set", sun=a, ring=b, carrier=d.shaft("c", inertia=0.5, speed=5.0), ratio=2.0))
-    with pytest.warns(cw.StoppedEarly, match="initial speeds break the ratio of a transmission at '"):
+    with pytest.warns(cw.StoppedEarly, match="locked contacts break the ratio of a transmission at '"):
         run = d.simulate(1.0, t_start=0.5)
     assert run.status == "jammed"
 

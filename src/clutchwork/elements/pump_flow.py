@@ -12,7 +12,7 @@ from clutchwork.elements.bases.oil import DENSITY, VISCOSITY
         State("energy", "J", "work given to the oil since the start"),
         State("loss", "J", "heat of its friction and its leakage since the start"),
     ),
-    hooks=("drawn",),
+    hooks=("margin", "cross", "drawn"),
 )
 class PumpFlow(Component):
     """Oil that a pump delivers at a speed: `displacement speed/(2 pi) - leakage (outlet - inlet)/(dynamic viscosity)`.

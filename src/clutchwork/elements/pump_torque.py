@@ -5,7 +5,7 @@ from __future__ import annotations
 from clutchwork.declare import Component, Node, Role, SignalLike, component, param, port, signal
 
 
-@component(Role.TORQUE)
+@component(Role.TORQUE, hooks=("margin", "cross", "turns", "settle"))
 class PumpTorque(Component):
     """Torque that a pump takes from its shaft; `Pump` holds one.
 

@@ -32,7 +32,7 @@ JAMS = {
         "nothing holds the shafts beside a stop that is closed",
         "give the shafts without inertia beside it some, and gears that lock themselves more efficiency",
     ),
-    "ratio": ("prescribed or initial speeds break the ratio of a transmission", ""),
+    "ratio": ("initial speeds, prescribed ones or locked contacts break the ratio of a transmission", ""),
     "light": (
         "at its ratio nothing determines the speed of the shaft without inertia beside it",
         "give that shaft inertia, or keep the ratio away from there: from zero, or from one if it is the support",

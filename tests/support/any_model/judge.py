@@ -97,6 +97,8 @@ def ending(made: Plain, base: Any) -> list[Fault]:
         return [Fault("status", base.status, f"without its sentence: {base.message[:300]}")]
     if base.status in CAUSES and any(CAUSES[base.status] in kind for kind in kinds):
         return []
+    if contradicts(made, base):
+        return []
     # a ratio that leaves zero against what stands
     grounded = any("ratio" in one and "housing" in (one.get("input"), one.get("output")) for one in made["element"])
     if base.status == "jammed" and grounded:
@@ -148,6 +150,27 @@ def _left(ways: list[Any], node: int, front: float, back: float) -> float:
     first, second = (back * ways[0].direction.get(node, 0.0), front * ways[1].direction.get(node, 0.0))
     size = max(abs(back), abs(front)) * max(abs(way.direction.get(node, 0.0)) for way in ways)
     return (first - second) / size if size else 0.0
+
+
+def contradicts(made: Plain, base: Any) -> bool:
+    """Whether a run jams where it starts as given speeds do not fit the ratio of a transmission there: without one of
+    them it starts."""
+    if base.status != "jammed" or len(base.rows) or JAMS["ratio"][0] not in base.message:
+        return False
+    ways = [branch for branch in base.wiring.elements if repr(branch.component.name) in base.message]
+    nodes = base.wiring.nodes
+    named = {nodes[node].name for branch in ways for node in branch.direction if node != HOUSING}
+    given = {one["name"] for kind in ("shaft", "mass") for one in made[kind] if "speed" in one}
+    if not named <= given:
+        return False
+
+    def free(name: str) -> Plain:
+        return {
+            kind: [{k: v for k, v in one.items() if k != "speed" or one["name"] != name} for one in made[kind]]
+            for kind in ("shaft", "mass")
+        }
+
+    return any(agree.run({**made, **free(name)}).status != base.status for name in sorted(named))
 
 
 def passes_zero(base: Any) -> bool:

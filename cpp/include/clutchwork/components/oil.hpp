@@ -1,5 +1,6 @@
 #pragma once
 #include <clutchwork/components/component.hpp>
+#include <clutchwork/components/regions.hpp>
 
 /// Flow of oil through openings: docs/theory/hydraulics.md.
 namespace clutchwork {
@@ -49,11 +50,22 @@ S pump_filling(const S& inlet) {
   return value(x) > 0 ? x * x * (S(3) - S(2) * x) : S(0);
 }
 
+/// Pieces of a pump: the pressure rises through it, or falls.
+enum PumpPiece : int { rising, falling };
+
+/// Pressure difference the way it goes now [bar].
+template <class S>
+S pump_margin(int piece, const S& difference, int& who) {
+  Least<S> least(who);
+  least.watch(difference * S((piece == falling ? -1 : 1) / bar), 0);
+  return least.margin();
+}
+
 /// Friction of a pump that grows with its load, against its motion; it fades out where that is slow.
 /// docs/theory/hydraulics.md (11)
 template <class T, class S>
-S pump_friction(const T& efficiency, const T& slow, const S& ideal, const S& rate) {
-  const S size = sqrt(ideal * ideal + T(1e-12));
+S pump_friction(const T& efficiency, const T& slow, int piece, const S& ideal, const S& rate) {
+  const S size = piece == falling ? -ideal : ideal;
   return (T(1) / efficiency - T(1)) * size * rate / sqrt(rate * rate + slow * slow);
 }
 

@@ -379,6 +379,8 @@ bool hold_together(Workspace<T>& ws, double tolerance) {
   }
   list_locked(ws);
   Held<T>& h = ws.held;
+  // no ratio moves in a decision
+  h.n_fixed = h.n;
   bool holds = h.n_sets > 0 && factor_mobility(ws);
   if (holds) {
     free_motion(ws, candidate, ws.decision.motion);

@@ -58,6 +58,9 @@ struct FluidCoupling : declared::FluidCoupling {
   template <class T, class S>
   static int cross(const Params<T>& p, const At<S>& at, int who, S*) {
     const int n = int(common(p.speed_ratio.count)), piece = at.piece % n, side = at.piece - piece;
+    // near rest, where round-off chose the piece, all pieces between are passed at once
+    const auto base = abs(value(at.rates[Way::base])), follower = abs(value(at.rates[Way::follower]));
+    if (side == 0 ? follower > 2 * base : base > 2 * follower) return placed(p, at);
     if (who == 1) return piece + 1 < n ? at.piece + 1 : piece + (side == 0 ? n : 0);
     return piece > 0 ? at.piece - 1 : side == 0 ? n : 0;
   }
@@ -69,14 +72,19 @@ struct FluidCoupling : declared::FluidCoupling {
   static int settle(const Params<T>& p, const At<S>& at) {
     int who = turned;
     if (value(margin(p, at, who)) >= 0) return at.piece;
+    return placed(p, at);
+  }
+
+ private:
+  /// The piece that holds both speeds.
+  template <class T, class S>
+  static int placed(const Params<T>& p, const At<S>& at) {
     const List ratios = list_of(p.speed_ratio, at.points);
     const auto base = value(at.rates[Way::base]), follower = value(at.rates[Way::follower]);
     const bool by_base = abs(base) >= abs(follower);
     const auto fast = by_base ? base : follower, slow = by_base ? follower : base;
     return ratio_piece(ratios, fast == 0 ? decltype(fast)(0) : slow / fast) + (by_base ? 0 : ratios.count);
   }
-
- private:
   /// k at point i.
   template <class T>
   static T factor(const Params<T>& p, const auto* points, int i) {

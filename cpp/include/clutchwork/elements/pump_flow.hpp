@@ -39,9 +39,18 @@ struct PumpFlow : declared::PumpFlow {
   template <class T, class S>
   static void state_rates(const Params<T>& p, const At<S>& at, S* rates) {
     const S u = drop(p, at), w = at.input[Input::speed];
-    const S friction = pump_friction(p.efficiency, p.slow, per_radian(p, at) * u, w) + p.drag * w;
+    const S friction = pump_friction(p.efficiency, p.slow, at.piece, per_radian(p, at) * u, w) + p.drag * w;
     rates[energy] = flow(p, at) * u;
     rates[loss] = lost_flow(p, at) * u + friction * w;
+  }
+
+  template <class T, class S>
+  static S margin(const Params<T>& p, const At<S>& at, int& who) {
+    return pump_margin(at.piece, drop(p, at), who);
+  }
+  template <class T>
+  static int cross(const Params<T>&, const At<T>& at, int, T*) {
+    return at.piece == falling ? rising : falling;
   }
 };
 

@@ -39,6 +39,8 @@ bool jumps_between(Workspace<T>& ws, int d, int piece, int side) {
   auto jumps = [&](const T& rate, double least) {
     auto torque = [&](int at) {
       b.piece = at;
+      // what else of its piece follows the torque there
+      if (at != piece && is_settling(b.kind)) b.piece = law_cross(ws, b, &rate, turned, ws.state);
       return value(branch_torque_once(ws, b, rate, ws.state, ws.observed.state_rates));
     };
     const double here = torque(piece), there = torque(piece + side);

@@ -13,6 +13,8 @@ from clutchwork.signals.bases.waveform import piece_value
 STRAIGHT = Segment(0.0)[3:]
 # time constants after which a wave has died away, to some 1e-17 of itself
 SETTLED = 40.0
+# of the largest value of a signal: one at the end of a piece that is less is the round-off of zero
+ROUND_OFF = 1e-15
 
 
 class Reached(NamedTuple):
@@ -28,6 +30,13 @@ def extremes(signal: Signal) -> Iterator[Reached]:
     They hold the smallest and the largest value of every signal whose pieces are a cubic or one wave, except for a
     cubic without end.
     """
+    found = list(_reached(signal))
+    zero = ROUND_OFF * max((abs(value) for _, value in found), default=0.0)
+    yield from (Reached(time, value if abs(value) > zero else 0.0) for time, value in found)
+
+
+def _reached(signal: Signal) -> Iterator[Reached]:
+    """The same with their round-off."""
     pieces, period = signal.segments(), signal.repeats()
     ends = [piece.start for piece in pieces[1:]]
     ends += [pieces[0].start + period if period > 0.0 else inf] if pieces else []

@@ -78,6 +78,30 @@ struct Parting : OwnScale {
   static int component(const Workspace<T>& ws, const Hit& hit) {
     return int(ws.sys.elements) + ws.held.redundant[hit.index];
   }
+  /// Parted again at the same instant: a decision has let nothing go, so little does it accelerate. What holds least of
+  /// the slip that is left slips.
+  template <class Phase, class T = typename Phase::Scalar>
+  static void force(Phase& phase, const Hit& hit) {
+    Workspace<T>& ws = phase.ws();
+    const int c = ws.held.redundant[hit.index];
+    const auto& last = ws.event_context;
+    const bool again = stands_since(ws, ws.guard.jumped_at) && last.cause == Cause::torque_limit && last.contact == c;
+    if (!again || is_rigid(ws, c)) return;
+    const double slip = slip_beside(phase.taken_form(), phase.taken_step(), c, hit.s);
+    double least = infinity;
+    int weakest = -1, way = 0;
+    auto weigh = [&](int contact, double moved) {
+      if (moved == 0 || is_rigid(ws, contact) || ws.loads.of[contact] >= 0) return;
+      T lower, upper;
+      bounds_of_held(ws, contact, lower, upper);
+      const double strength = (moved > 0 ? -value(lower) : value(upper)) / abs(moved);
+      if (strength < least) least = strength, weakest = contact, way = moved > 0 ? forward : backward;
+    };
+    weigh(c, slip);
+    for (int a = 0; a < ws.held.n; ++a)
+      weigh(ws.held.contact[a], -slip * value(ws.held.tie[hit.index * ws.sys.contacts + a]));
+    if (least < infinity) ws.contact.forced[weakest] = way;
+  }
   template <class Phase>
   static void settle(Phase& phase, const Hit& hit) {
     phase.decide(Cause::torque_limit, phase.ws().held.redundant[hit.index]);

@@ -1,5 +1,6 @@
 #pragma once
 #include <clutchwork/contacts/locked.hpp>
+#include <clutchwork/contacts/set_margin.hpp>
 #include <clutchwork/contacts/sticking.hpp>
 #include <clutchwork/run/clamp_loads.hpp>
 #include <clutchwork/run/event.hpp>
