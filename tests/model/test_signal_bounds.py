@@ -108,3 +108,11 @@ def test_a_table_that_falls_to_its_bound_keeps_it():
         fall = cw.Table([(0.0, 0.37 + 0.0123 * number), (2.0, 0.91 - 0.0131 * number), (2.2, 0.0)])
         d.add(cw.Retarder(f"r{number}", shaft=shaft, capacity=1.0, command=fall))
     assert d.check() == []
+
+
+def test_a_table_that_falls_to_zero_is_not_above_it():
+    """Whatever the round-off at the end of the piece that falls."""
+    for number in range(50):
+        fall = cw.Table([(0.0, 0.37 + 0.0123 * number), (0.2 + 0.0131 * number, 0.0), (2.2, 0.5)])
+        (problem,) = found(pressure=1.0, share=fall)
+        assert "share = 0 at" in problem

@@ -217,6 +217,8 @@ MENDED: dict[str, list[int]] = {
     "a motor whose limit jumps where its shaft passes rest": [44017048],
     "a coupling that round-off left with the wrong shaft as the fast one": [44010740],
     "a naive law that took the sign of round-off": [44016361],
+    "torques of many gears with losses that were not found": [45018363, 44006728],
+    "a sleeve at the tips of teeth whose command ends": [45009098],
 }
 
 

@@ -134,15 +134,29 @@ void wanted(const CoupledProblem<T>& p, int i, int& state, int& line) {
   }
 }
 
-/// All that want another state or line get it, or from `single` on the first alone. How many wanted one.
+/// Which of those that want another state get it in a round: all, the first alone, or those that a draw allows.
+enum class Changes { all, first, drawn };
+
+/// Draws that are the same in every run.
+struct Draws {
+  std::uint64_t bits;
+
+  bool next() {
+    bits ^= bits << 13, bits ^= bits >> 7, bits ^= bits << 17;
+    return (bits >> 32 & 1) != 0;
+  }
+};
+
+/// Those that want another state or line get it, as the rule says. How many wanted one.
 template <class T>
-int change_states(CoupledProblem<T>& p, bool single) {
+int change_states(CoupledProblem<T>& p, Changes rule, Draws& draws) {
   int changes = 0;
   for (int i = 0; i < p.n; ++i) wanted(p, i, p.next[2 * i], p.next[2 * i + 1]);
   for (int i = 0; i < p.n; ++i) {
     if (p.next[2 * i] == p.state[i] && p.next[2 * i + 1] == p.line[i]) continue;
     const bool counts = p.next[2 * i] != p.state[i] || p.state[i] != 0;
-    if (!counts || !single || changes == 0) p.state[i] = p.next[2 * i], p.line[i] = p.next[2 * i + 1];
+    const bool may = rule == Changes::all || (rule == Changes::first ? changes == 0 : draws.next());
+    if (!counts || may) p.state[i] = p.next[2 * i], p.line[i] = p.next[2 * i + 1];
     changes += counts;
   }
   return changes;
@@ -193,15 +207,17 @@ std::uint64_t mark_of_states(const CoupledProblem<T>& p) {
   return mark;
 }
 
-/// Policy iteration from all at rest: each round solves for the torques and gives all contacts the state that they ask
-/// for, or the first of those that want another one. False: it does not settle, as where states come back.
+/// Policy iteration from all at rest: each round solves for the torques and gives contacts the state that they ask for.
+/// False: it does not settle, as where states come back.
 template <class T>
-bool iterate_states(CoupledProblem<T>& p, bool single) {
+bool iterate_states(CoupledProblem<T>& p, Changes rule, std::uint64_t start = 1) {
   start_states(p);
   std::uint64_t seen = 0;
+  Draws draws{start};
   for (int round = 0, kept = 1; round < 40 * p.n + 60; ++round) {
     if (!solve_states(p)) return false;
-    if (change_states(p, single) == 0) return p.either || answers(p);
+    if (change_states(p, rule, draws) == 0) return p.either || answers(p);
+    if (rule == Changes::drawn) continue;
     const std::uint64_t mark = mark_of_states(p);
     if (mark == seen) return false;
     // a cycle comes back to what is kept for twice as long each time
@@ -231,9 +247,20 @@ bool enumerate_states(CoupledProblem<T>& p) {
   return false;
 }
 
+/// Among many contacts no combination is met by chance, but draws leave the rounds in which states come back.
+template <class T>
+bool draw_states(CoupledProblem<T>& p) {
+  constexpr int tries = 20;
+  if (combinations(p, most_combinations) < most_combinations) return false;
+  for (std::uint64_t k = 1; k <= tries; ++k) {
+    if (iterate_states(p, Changes::drawn, k * 0x9e3779b97f4a7c15u)) return true;
+  }
+  return false;
+}
+
 template <class T>
 bool search_states(CoupledProblem<T>& p) {
-  return iterate_states(p, false) || iterate_states(p, true) || enumerate_states(p);
+  return iterate_states(p, Changes::all) || iterate_states(p, Changes::first) || enumerate_states(p) || draw_states(p);
 }
 
 /// Torques, states and lines that fit together; where those that are let go cannot all move that way, as they can;

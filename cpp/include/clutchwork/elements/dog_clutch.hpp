@@ -113,7 +113,7 @@ struct DogClutch : declared::DogClutch {
   template <class T>
   static int cross(const Params<T>& p, const At<T>& at, int who, T* state) {
     if (who == turned) return at.piece;
-    if (who == leaves) return apart;
+    if (who == leaves) return at.piece <= blocked ? draw_back(p, state) : int(apart);
     if (who == slips) return fast;
     if (at.piece == blocked) return mesh(p, state);
     if (at.piece == apart || at.piece == fast) return meet(p, at, state);
@@ -151,6 +151,12 @@ struct DogClutch : declared::DogClutch {
   template <class T>
   static int mesh(const Params<T>& p, T* state) {
     return state[angle] = off_centre(p, state), loose;
+  }
+
+  /// From the tips of the teeth, to round-off, where it would be held back at once again.
+  template <class T>
+  static int draw_back(const Params<T>& p, T* state) {
+    return state[sleeve] = p.reach, apart;
   }
 
   /// The flank that the teeth are on, or next to.
