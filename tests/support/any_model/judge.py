@@ -97,13 +97,9 @@ def ending(made: Plain, base: Any) -> list[Fault]:
         return [Fault("status", base.status, f"without its sentence: {base.message[:300]}")]
     if base.status in CAUSES and any(CAUSES[base.status] in kind for kind in kinds):
         return []
-    if contradicts(made, base):
-        return []
     # a ratio that leaves zero against what stands
     grounded = any("ratio" in one and "housing" in (one.get("input"), one.get("output")) for one in made["element"])
-    if base.status == "jammed" and grounded:
-        return []
-    if base.status == "jammed" and JAMS["light"][0] in base.message:
+    if base.status == "jammed" and (grounded or JAMS["light"][0] in base.message or contradicts(made, base)):
         return []
     # a freewheel, or a gear that locks itself, behind a ratio that passes zero: whatever it held, what turns on the
     # other side would turn it backward
