@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from typing import Any
 
 import numpy as np
@@ -38,6 +38,18 @@ def refuse(problems: Sequence[FitError]) -> None:
     if problems:
         first = problems[0]
         raise FitError(first.quantity, first.message, first.remedy, problems)
+
+
+def all_of(*checks: Callable[[], Any]) -> list[Any]:
+    """What each returns; what is wrong with all of them is raised at once."""
+    found, problems = list[Any](), list[FitError]()
+    for check in checks:
+        try:
+            found.append(check())
+        except FitError as error:
+            problems += error.problems
+    refuse(problems)
+    return found
 
 
 def scipy(module: str) -> Any:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import replace
+from functools import partial
 from numbers import Real
 from pathlib import Path
 from typing import Any
@@ -20,7 +21,7 @@ from clutchwork.fit.adjustable import faults
 from clutchwork.fit.engine import Solution
 from clutchwork.fit.estimates import Parameter
 from clutchwork.fit.experiment import advice
-from clutchwork.fit.failure import FitError, described_by_nothing
+from clutchwork.fit.failure import FitError, all_of, described_by_nothing
 from clutchwork.fit.intervals import Estimate, estimate
 from clutchwork.fit.losses import WIDTH, Penalty
 from clutchwork.fit.measurement import Measurement, measurement
@@ -69,8 +70,12 @@ def fit_law(
     Samples that do not determine a parameter are not an error: the result reports it. FitError reports wrong input, and
     a fit that is worse than the mean of the samples.
     """
-    samples = measurement(time, slip, torque, load, temperature=temperature, translation=translation)
-    return _fit(samples, law, free, bounds, rest, confidence, Penalty(loss, loss_width))
+    samples, penalty, _ = all_of(
+        partial(measurement, time, slip, torque, load, temperature=temperature, translation=translation),
+        partial(Penalty, loss, loss_width),
+        partial(_check, law, free, bounds, rest, confidence),
+    )
+    return _fit(samples, law, free, bounds, rest, confidence, penalty)
 
 
 def fit_csv(
@@ -95,8 +100,12 @@ def fit_csv(
     a column such as `slip [rpm]` is converted. Load and temperature may be numbers in SI.
     """
     columns = {"time": time, "slip": slip, "torque": torque, "load": load}
-    samples = table.read(path, columns if temperature is None else columns | {"temperature": temperature})
-    return _fit(samples, law, free, bounds, rest, confidence, Penalty(loss, loss_width))
+    samples, penalty, _ = all_of(
+        partial(table.read, path, columns if temperature is None else columns | {"temperature": temperature}),
+        partial(Penalty, loss, loss_width),
+        partial(_check, law, free, bounds, rest, confidence),
+    )
+    return _fit(samples, law, free, bounds, rest, confidence, penalty)
 
 
 def _fit(
@@ -108,8 +117,6 @@ def _fit(
     confidence: float,
     loss: Penalty,
 ) -> FitResult:
-    _check(law, rest, confidence)
-
     def searched(samples: Measurement) -> tuple[Residuals, Solution]:
         samples = at_temperature(samples, law)
         check_inside(samples, law)
@@ -165,14 +172,25 @@ def _doubts(search: Residuals, found: Estimate) -> list[str]:
     return lines
 
 
-def _check(law: Law, rest: float | None, confidence: float) -> None:
+def _check(law: Law, free: Sequence[str] | None, bounds: Bounds | None, rest: float | None, confidence: float) -> None:
+    all_of(partial(_check_law, law, free, bounds), partial(_check_rest, rest), partial(_check_confidence, confidence))
+
+
+def _check_law(law: Law, free: Sequence[str] | None, bounds: Bounds | None) -> None:
     if not isinstance(law, LawBase):
         raise FitError("law", f"is {law!r}, which is not a friction law", "give one with its start values")
     found = faults(law)
     if found:
         raise FitError("law", f"has start values that do not fit: {found[0]}", "correct them")
+    Unknowns(law, free, bounds, translation=False)
+
+
+def _check_rest(rest: float | None) -> None:
     if rest is not None and not 0.0 <= rest < np.inf:
         raise FitError("rest", f"is {rest:g}", "give a slip >= 0")
+
+
+def _check_confidence(confidence: float) -> None:
     if not 0.0 < confidence < 1.0:
         raise FitError("confidence", f"is {confidence:g}", "give a share such as 0.95")
 

@@ -2,15 +2,18 @@
 
 from __future__ import annotations
 
+from functools import partial
 from typing import Any
 
 import numpy as np
 
 from clutchwork.base import dataclass
 from clutchwork.base.arrays import Array
-from clutchwork.fit.failure import FitError, numbers_of, rising
+from clutchwork.fit.failure import FitError, all_of, numbers_of, rising
 
 FEWEST = 5
+# of what may be one number for all samples
+UNITS = {"load": "N m", "temperature": "K"}
 
 
 @dataclass(frozen=True, eq=False)
@@ -39,21 +42,29 @@ def measurement(
     Parameters: time [s], rising; slip [rad/s or m/s]; torque [N m or N], positive with the slip or against it; load
     [N m or N] and temperature [K], one number or one for each sample.
     """
-    rows = {"time": numbers_of("time", time), "slip": numbers_of("slip", slip), "torque": numbers_of("torque", torque)}
-    count = len(rows["time"])
-    for name, value, unit in (("load", load, "N m"), ("temperature", temperature, "K")):
-        if name == "load" or value is not None:
-            rows[name] = np.full(count, _number(name, value, unit)) if np.ndim(value) == 0 else numbers_of(name, value)
-    for name, row in rows.items():
-        if len(row) != count:
-            raise FitError(name, f"has {len(row)} values, time has {count}", "give one value for each instant")
-        _finite(name, row)
+    given = {"time": time, "slip": slip, "torque": torque, "load": load}
+    given |= {} if temperature is None else {"temperature": temperature}
+    found = all_of(*(partial(_row, name, value, UNITS.get(name, "")) for name, value in given.items()))
+    count = len(found[0])
+    rows = {name: np.full(count, row) if np.ndim(row) == 0 else row for name, row in zip(given, found, strict=True)}
+    all_of(*(partial(_complete, name, row, count) for name, row in rows.items()))
     _sensible(rows)
     # friction dissipates: the sign of the work tells on whom the torque was measured
     turned = float(rows["torque"] @ rows["slip"]) < 0.0
     torque = -rows["torque"] if turned else rows["torque"]
     time, slip, load = rows["time"] - rows["time"][0], rows["slip"], rows["load"]
     return Measurement(time, slip, torque, load, translation, turned, rows.get("temperature"))
+
+
+def _row(name: str, value: Any, unit: str) -> Any:
+    """A row, or the number of one that may be given as such: that has a unit."""
+    return numbers_of(name, value) if np.ndim(value) > 0 or not unit else _number(name, value, unit)
+
+
+def _complete(name: str, row: Array, count: int) -> None:
+    if len(row) != count:
+        raise FitError(name, f"has {len(row)} values, time has {count}", "give one value for each instant")
+    _finite(name, row)
 
 
 def _number(name: str, value: Any, unit: str) -> float:
@@ -71,10 +82,17 @@ def _finite(name: str, row: Array) -> None:
 
 def _sensible(rows: dict[str, Array]) -> None:
     """Refuse what cannot be a measurement of friction."""
-    time, slip, torque, load = (rows[name] for name in ("time", "slip", "torque", "load"))
+    all_of(*(partial(check, rows) for check in (_warm, _timed, _pressed, _slides, _rubs)))
+
+
+def _warm(rows: dict[str, Array]) -> None:
     if "temperature" in rows and np.any(rows["temperature"] <= 0.0):
         at = int(np.argmin(rows["temperature"]))
         raise FitError("temperature", f"is {rows['temperature'][at]:g} at sample {at}", "give it in kelvin")
+
+
+def _timed(rows: dict[str, Array]) -> None:
+    time = rows["time"]
     if len(time) < FEWEST:
         raise FitError("time", f"has {len(time)} values", f"give at least {FEWEST} samples")
     back = np.flatnonzero(np.diff(time) <= 0.0)
@@ -82,13 +100,23 @@ def _sensible(rows: dict[str, Array]) -> None:
         at = back[0] + 1
         other = rising({name: rows[name] for name in ("slip", "torque")})
         raise FitError("time", f"does not rise at sample {at} ({time[at]:g} s)", f"sort the samples by time{other}")
+
+
+def _pressed(rows: dict[str, Array]) -> None:
+    load = rows["load"]
     if np.any(load < 0.0):
         at = int(np.argmin(load))
         raise FitError("load", f"is {load[at]:g} N m at sample {at}", "give the load as a magnitude, >= 0")
     if not np.any(load):
         raise FitError("load", "is always zero", "give the load that presses the contact together")
-    if not np.any(slip):
+
+
+def _slides(rows: dict[str, Array]) -> None:
+    if not np.any(rows["slip"]):
         remedy = "at rest friction is only bounded, not known: record samples that slide"
         raise FitError("slip", "is always zero", remedy)
-    if not np.any(torque):
+
+
+def _rubs(rows: dict[str, Array]) -> None:
+    if not np.any(rows["torque"]):
         raise FitError("torque", "is always zero", "check the column and the sensor")

@@ -53,11 +53,15 @@ S pump_filling(const S& inlet) {
 /// Pieces of a pump: the pressure rises through it, or falls.
 enum PumpPiece : int { rising, falling };
 
+/// Beyond zero, so that the piece does not follow round-off of a pressure that has died away [bar].
+inline constexpr double pump_slack = 1e-8;
+
 /// Pressure difference the way it goes now [bar].
 template <class S>
 S pump_margin(int piece, const S& difference, int& who) {
   Least<S> least(who);
-  least.watch(difference * S((piece == falling ? -1 : 1) / bar), 0);
+  const S way = difference * S((piece == falling ? -1 : 1) / bar);
+  least.watch(least.rests ? way : way + S(pump_slack), 0);
   return least.margin();
 }
 

@@ -38,7 +38,7 @@ struct PumpTorque : declared::PumpTorque {
   template <class T>
   static int settle(const Params<T>&, const At<T>& at) {
     const auto u = value(difference(at));
-    return u == 0 ? at.piece : u < 0 ? falling : rising;
+    return abs(u) <= pump_slack * bar ? at.piece : u < 0 ? falling : rising;
   }
 
  private:

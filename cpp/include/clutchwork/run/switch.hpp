@@ -86,7 +86,8 @@ template <class T>
 int entered_piece(Workspace<T>& ws, int d) {
   const int piece = ws.piece[d], edges = edge_count(ws, d), interval = piece % (edges + 1);
   const double rate = value(rate_of(ws, d)), zero = slip_tolerance(ws);
-  const double noise = 1e-12 * ws.decision.effort * value(sqrt(ws.geometry.own[d]));
+  // one that others hold at rest moves by round-off alone: what does not leave within a second stays
+  const double noise = larger(1e-12 * ws.decision.effort * value(sqrt(ws.geometry.own[d])), zero);
   for (int side = -1; side <= 1; side += 2) {
     const int i = side < 0 ? interval - 1 : interval;
     if (i < 0 || i >= edges || abs(rate - value(edge_at(ws, d, i))) > zero) continue;
