@@ -98,6 +98,14 @@ inline bool is_loaded(int kind) {
   return visit_contact(kind, [](auto tag) { return LoadedContact<typename decltype(tag)::type>; });
 }
 
+/// Whether what a contact holds may depend on the way in which it is pulled.
+inline bool is_directed(int kind) {
+  return visit_contact(kind, [](auto tag) {
+    using E = typename decltype(tag)::type;
+    return ShapedContact<E> || LimitedContact<E> || LoadedContact<E>;
+  });
+}
+
 /// Static coefficient of a law.
 template <class T>
 CLUTCHWORK_INLINE T law_hold(int law, const T* params, const T* input, const Point<T>* points) {
