@@ -219,6 +219,9 @@ MENDED: dict[str, list[int]] = {
     "a naive law that took the sign of round-off": [44016361],
     "torques of many gears with losses that were not found": [45018363, 44006728],
     "a sleeve at the tips of teeth whose command ends": [45009098],
+    "a ratio that follows a driver, in the piece in which the driver is": [46017442, 46012086],
+    "a motor at rest between ratios that hold it": [46002783],
+    "a pump whose pressures have died away": [46000164],
 }
 
 

@@ -51,7 +51,8 @@ T slope_of_input(Workspace<T>& ws, int ref) {
         if (d >= 0 && d < ws.n_directions) ws.in.u[own] = rate_of(ws, d);
       }
       T rates[E::states];
-      E::state_rates(p, At<T>{T(0), ws.state + first, ws.in.u + sys.process_input[i], 0, points_of(ws)}, rates);
+      const T* inputs = ws.in.u + sys.process_input[i];
+      E::state_rates(p, At<T>{T(0), ws.state + first, inputs, ws.shared.piece[i], points_of(ws)}, rates);
       slope = rates[state - first];
     });
   }
