@@ -327,3 +327,18 @@ def test_it_slips_between_the_housing_and_a_prescribed_shaft(start):
     assert abs(run["v.torque"][-1]) == pytest.approx(3.0, rel=1e-9)
     # capacity times the integral of the slip
     assert run.energy.heat["v"] == pytest.approx(3.0 * 0.5 * 5.0 * 0.5, rel=1e-7)
+
+
+def test_an_impulse_beside_a_freewheel_that_a_ratio_holds_keeps_momentum() -> None:
+    """The gear turns a light shaft with its support, whose freewheel to it has no slip at any speed: it takes no part."""
+    d = cw.Driveline("light")
+    one, other, third = (d.shaft(name, inertia=1.0) for name in ("one", "other", "third"))
+    light = d.shaft("light", inertia=0.0, speed=60.0)
+    d.add(cw.OneWayClutch("freewheel", base=light, follower=other))
+    d.add(cw.TorqueSensor("rigid", base=one, follower=other))
+    d.add(cw.VariableGear("gear", input=one, output=light, support=other, ratio=-7.81))
+    d.add(cw.SpragClutch("sprag", base=third, follower=other, holding=1.0, locked=True))
+    run = d.simulate(0.1)
+    for name in ("one", "other", "third", "light"):
+        assert run[f"{name}.speed"] == pytest.approx(40.0, rel=1e-12)
+    assert abs(run.energy.residual) <= 1e-9 * run.energy.turnover

@@ -167,7 +167,12 @@ void take_off_followers(const Workspace<T>& ws, T* x, T* via) {
     if (via != nullptr) via[a] = T(0);
     if (i < 0 || value(x[i]) == 0) continue;
     const T share = x[i] / r.row[a * nv + i];
-    axpy(nv, -share, r.row + a * nv, x);
+    for (int j = 0; j < nv; ++j) {
+      const double before = abs(value(x[j]));
+      x[j] -= share * r.row[a * nv + j];
+      // what cancels leaves no round-off
+      if (abs(value(x[j])) <= 1e-14 * before) x[j] -= T(value(x[j]));
+    }
     x[i] = T(0);
     if (via != nullptr) via[a] = share;
   }
