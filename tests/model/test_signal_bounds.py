@@ -113,6 +113,16 @@ def test_a_table_that_falls_to_its_bound_keeps_it():
 def test_a_table_that_falls_to_zero_is_not_above_it():
     """Whatever the round-off at the end of the piece that falls."""
     for number in range(50):
-        fall = cw.Table([(0.0, 0.37 + 0.0123 * number), (0.2 + 0.0131 * number, 0.0), (2.2, 0.5)])
-        (problem,) = found(pressure=1.0, share=fall)
-        assert "share = 0 at" in problem
+        end = 0.2 + 0.0131 * number
+        for further in ([(2.2, 0.5)], [(end, 0.5)]):
+            (problem,) = found(pressure=1.0, share=cw.Table([(0.0, 0.37 + 0.0123 * number), (end, 0.0), *further]))
+            assert "share = 0 at" in problem
+
+
+def test_a_ramp_that_ends_at_a_bound_late_keeps_it():
+    """The round-off at its end is that of the time."""
+    for number in range(100):
+        height, start, duration = 0.37 + 0.0061 * number, 7.3 * 1.05**number, 0.013 * (1 + number)
+        ends = {"duration": duration, "start": start}
+        assert not found(pressure=cw.Ramp(height=-height, offset=height, **ends))
+        assert not found(pressure=1.0, share=cw.Ramp(height=1.0 - height, offset=height, **ends))

@@ -418,3 +418,16 @@ def test_parts_that_are_not_there_are_named() -> None:
         cw.ValveBody("body", shaft=shaft, piston_areas={"A": 6e-3}).part("B_piston")
     with pytest.raises(cw.UnknownName, match="body has values that make no parts"):
         cw.ValveBody("body", shaft=shaft, piston_areas=[6e-3]).part("A_piston")  # type: ignore[arg-type]
+
+
+def test_a_pump_whose_pressure_difference_jumps_through_zero_in_fixed_steps() -> None:
+    """Its friction follows the pressure within the step: errors fall with the square of its length."""
+    d = cw.Driveline("pump")
+    s = d.shaft("s", inertia=0.3, speed=100.0)
+    outlet = cw.Pulse(height=1e6, offset=-5e5, period=0.2, width=0.1, start=0.03)
+    d.add(cw.Pump("p", shaft=s, displacement=1.6e-5, efficiency=0.8, drag=5e-3, leakage=1e-12, outlet=outlet))
+    d.add(cw.Torque("t", shaft=s, torque=0.5))
+    exact = d.simulate(1.0, rtol=1e-10, atol=1e-12)["s.speed"][-1]
+    long, short = (abs(d.simulate(1.0, method="fixed", step=step)["s.speed"][-1] - exact) for step in (1e-2, 1e-3))
+    assert long < 1e-4
+    assert short < 0.02 * long

@@ -157,3 +157,35 @@ def test_a_brake_on_a_prescribed_mass_does_not_keep_a_cam_locked(turning: bool) 
     away = (-limit - first) / slope
     assert run.events[0].time == pytest.approx(away, rel=1e-9)
     assert run["shaft.speed"][-1] == pytest.approx(slope * (0.03 - away) ** 2 / 2 / 0.08, rel=1e-6)
+
+
+@pytest.mark.parametrize("size", [1e-3, 1e-6, 1e-8])
+@pytest.mark.parametrize(
+    ("capacities", "load", "torques"),
+    [
+        # 9 Nm of the brake: it has 5 of 10 left, the clutches 8 and 3 together with the same 5
+        ((10.0, 8.0, 3.0), 5.0, (-9.0, 4.0 * 8.0 / 11.0, 4.0 * 3.0 / 11.0)),
+        ((5.0, 5.0, 5.0), 0.0, (-4.5, 2.25, 2.25)),
+        ((10.0, 8.0), 9.0, (-9.0, 0.0)),
+    ],
+    ids=["two clutches", "equal", "loaded"],
+)
+def test_however_slowly_a_shaft_is_drawn_away_the_weaker_side_slips(
+    size: float, capacities: tuple[float, ...], load: float, torques: tuple[float, ...]
+) -> None:
+    """A brake and clutches to a prescribed shaft, all locked; kinetic torque is 0.9 of static."""
+    d = cw.Driveline("slowly")
+    p, s = d.shaft("p", inertia=1.0), d.shaft("s", inertia=1.0)
+    leaving = cw.Sine(offset=size, amplitude=-size, frequency=0.05 / np.pi, phase=np.pi / 2)
+    d.add(cw.PrescribedSpeed("m", shaft=p, speed=leaving))
+    d.add(cw.Torque("t", shaft=s, torque=load))
+    for number, capacity in enumerate(capacities):
+        base, law = (d.housing if number == 0 else p), cw.Coulomb(static=1.0, kinetic=0.9)
+        d.add(
+            cw.Clutch(f"c{number}", base=base, follower=s, friction=law, gain=1.0, normal_force=capacity, locked=True)
+        )
+    run = d.simulate(30.0)
+    assert run["c0.state"][-1] == "forward"
+    found = [run[f"c{number}.torque"][-1] for number in range(len(capacities))]
+    # what follows the prescribed shaft is accelerated with it
+    assert found == pytest.approx(torques, abs=1e-6 + 0.02 * size)

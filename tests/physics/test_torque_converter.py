@@ -258,3 +258,16 @@ def test_a_turbine_that_turns_around_beside_a_standing_impeller(lag: float) -> N
 def test_tables_that_do_not_fit_are_refused(changes: dict[str, Any], word: str) -> None:
     with pytest.raises(cw.ModelError, match=word):
         rig(1.0, 1.0, **{**TABLES, **changes})
+
+
+@pytest.mark.parametrize("torques", [(1.0, 0.9), (0.9, 1.0), (0.3, 1.0)])
+def test_a_coupling_with_a_fine_table_leaves_rest(torques: tuple[float, float]) -> None:
+    """At once at the ratio of the torques, past most points of its table."""
+    ratios = np.linspace(0.0, 1.0, 101)
+    d = cw.Driveline("from rest")
+    a, b = d.shaft("a", inertia=1.0), d.shaft("b", inertia=1.0)
+    d.add(cw.FluidCoupling("c", base=a, follower=b, speed_ratio=ratios, capacity=5e-3 * (1.0 - ratios)))
+    for shaft, torque in zip((a, b), torques, strict=True):
+        d.add(cw.Torque(f"on {shaft.name}", shaft=shaft, torque=torque))
+    run = d.simulate(1.0)
+    assert run["a.speed"][-1] + run["b.speed"][-1] == pytest.approx(sum(torques), rel=1e-6)

@@ -82,7 +82,13 @@ def _finite(name: str, row: Array) -> None:
 
 def _sensible(rows: dict[str, Array]) -> None:
     """Refuse what cannot be a measurement of friction."""
+    _enough(rows)
     all_of(*(partial(check, rows) for check in (_warm, _timed, _pressed, _slides, _rubs)))
+
+
+def _enough(rows: dict[str, Array]) -> None:
+    if len(rows["time"]) < FEWEST:
+        raise FitError("time", f"has {len(rows['time'])} values", f"give at least {FEWEST} samples")
 
 
 def _warm(rows: dict[str, Array]) -> None:
@@ -93,8 +99,6 @@ def _warm(rows: dict[str, Array]) -> None:
 
 def _timed(rows: dict[str, Array]) -> None:
     time = rows["time"]
-    if len(time) < FEWEST:
-        raise FitError("time", f"has {len(time)} values", f"give at least {FEWEST} samples")
     back = np.flatnonzero(np.diff(time) <= 0.0)
     if len(back):
         at = back[0] + 1

@@ -56,6 +56,21 @@ T capacity_at(const Workspace<T>& ws, int c, T torque) {
       value(torque) > 0, [&] { return capacity_of(ws, c, backward); }, [&] { return capacity_of(ws, c, forward); });
 }
 
+/// The same of one that may hold less the other way: what leaves it no more than its torque is from either limit, for
+/// it may turn and come back within a step. docs/theory/events.md (7)
+template <class T>
+T capacity_left(const Workspace<T>& ws, int c, T torque) {
+  if (!is_directed(ws.sys.contact_kind[c]) || contact_one_way(ws, c)) return capacity_at(ws, c, torque);
+  return smaller(capacity_of(ws, c, forward) + torque, capacity_of(ws, c, backward) - torque) + abs(torque);
+}
+
+/// The larger capacity of both ways.
+template <class T>
+T most_capacity(const Workspace<T>& ws, int c) {
+  const T ahead = capacity_of(ws, c, forward);
+  return is_directed(ws.sys.contact_kind[c]) ? larger(ahead, capacity_of(ws, c, backward)) : ahead;
+}
+
 /// Above zero when a contact fails; below for one that cannot.
 template <class T>
 T fault_margin(const Workspace<T>& ws, int c) {

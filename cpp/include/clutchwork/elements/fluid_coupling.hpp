@@ -58,11 +58,13 @@ struct FluidCoupling : declared::FluidCoupling {
   template <class T, class S>
   static int cross(const Params<T>& p, const At<S>& at, int who, S*) {
     const int n = int(common(p.speed_ratio.count)), piece = at.piece % n, side = at.piece - piece;
-    // near rest, where round-off chose the piece, all pieces between are passed at once
-    const auto base = abs(value(at.rates[Way::base])), follower = abs(value(at.rates[Way::follower]));
-    if (side == 0 ? follower > 2 * base : base > 2 * follower) return placed(p, at);
-    if (who == 1) return piece + 1 < n ? at.piece + 1 : piece + (side == 0 ? n : 0);
-    return piece > 0 ? at.piece - 1 : side == 0 ? n : 0;
+    const int up = piece + 1 < n ? at.piece + 1 : piece + (side == 0 ? n : 0);
+    const int down = piece > 0 ? at.piece - 1 : side == 0 ? n : 0;
+    // near rest several pieces are passed at once, or round-off has taken the wrong shaft for the fast one
+    const int next = who == 1 ? up : down, there = placed(p, at);
+    if ((there < n) != (side == 0)) return there;
+    if ((next < n) != (side == 0)) return next;
+    return who == 1 ? larger(next, there) : smaller(next, there);
   }
   template <class T>
   static bool turns(const Params<T>&, int) {

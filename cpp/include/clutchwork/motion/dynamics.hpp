@@ -205,13 +205,6 @@ T load_share(const Workspace<T>& ws, int c) {
   return most;
 }
 
-/// Capacity of a locked contact that leaves it no more than its torque is from either limit. docs/theory/events.md (7)
-template <class T>
-T capacity_both_ways(const Workspace<T>& ws, int c, const StepEnd<T>& edge, int a) {
-  const T torque = edge.multiplier[a];
-  return smaller(edge.capacity[a], capacity_at(ws, c, -torque) + T(2) * abs(torque));
-}
-
 /// Multipliers of the locked contacts, their drift and their capacities there.
 template <class Form, class T = typename Form::Scalar>
 CLUTCHWORK_HOT void sense(Form& form, const T* y, const T* velocity, const T* d, StepEnd<T>& edge) {
@@ -236,14 +229,12 @@ CLUTCHWORK_HOT void sense(Form& form, const T* y, const T* velocity, const T* d,
   for (int a = 0; a < m; ++a) {
     edge.noise[a] = T(1e-12) * size;
     const int c = ws.held.contact[a];
-    edge.capacity[a] = capacity_at(ws, c, edge.multiplier[a]);
+    edge.capacity[a] = capacity_left(ws, c, edge.multiplier[a]);
     edge.swing[a] =
-        choose(load_bends(ws, c), [&] { return capacity_swing(ws, c, edge.capacity[a]); }, [] { return T(0); });
-    // with the way to zero, behind which it may hold less
-    if (is_directed(ws.sys.contact_kind[c])) edge.capacity[a] = capacity_both_ways(ws, c, edge, a);
+        choose(load_bends(ws, c), [&] { return capacity_swing(ws, c, most_capacity(ws, c)); }, [] { return T(0); });
     if constexpr (Form::full) {
       if (ws.loads.of[c] >= 0) {
-        edge.swing[a] = load_swing(ws, c, edge.multiplier[a]);
+        edge.swing[a] = larger(load_swing(ws, c, T(1)), load_swing(ws, c, T(-1)));
         // round-off of its load, twice what a decision concedes, for one that holds less than that
         const T more = edge.noise[a] * T(4) * (T(1) + load_share(ws, c));
         if (ws.held.in_set[a] == 0 && value(edge.capacity[a]) < value(more)) edge.noise[a] = more;

@@ -57,6 +57,8 @@ struct Guards {
   std::int64_t reversals_since = 0;
   double balanced_at = -infinity;  ///< [s] where speeds without inertia have jumped last, with a decision
   double jumped_at = -infinity;    ///< [s] where something has jumped last: the next step begins with what settles fast
+  double parted_at = -infinity;    ///< [s] where prescribed speeds have parted a locked contact last
+  int parted = -1;                 ///< which
   bool is_placed = false;          ///< the state is given from outside: the headings of the phase stay
   double zero = 0;                 ///< slip that counts as zero in the steps, by the speeds at the last event
 

@@ -13,8 +13,8 @@ from clutchwork.signals.bases.waveform import piece_value
 STRAIGHT = Segment(0.0)[3:]
 # time constants after which a wave has died away, to some 1e-17 of itself
 SETTLED = 40.0
-# of the largest value of a signal: one at the end of a piece that is less is the round-off of zero
-ROUND_OFF = 1e-15
+# of the terms of a piece: what it misses at its end of the value with which the next one begins, or of zero
+ROUND_OFF, NOTHING = 1e-13, 1e-15
 
 
 class Reached(NamedTuple):
@@ -30,23 +30,27 @@ def extremes(signal: Signal) -> Iterator[Reached]:
     They hold the smallest and the largest value of every signal whose pieces are a cubic or one wave, except for a
     cubic without end.
     """
-    found = list(_reached(signal))
-    zero = ROUND_OFF * max((abs(value) for _, value in found), default=0.0)
-    yield from (Reached(time, value if abs(value) > zero else 0.0) for time, value in found)
-
-
-def _reached(signal: Signal) -> Iterator[Reached]:
-    """The same with their round-off."""
     pieces, period = signal.segments(), signal.repeats()
     ends = [piece.start for piece in pieces[1:]]
     ends += [pieces[0].start + period if period > 0.0 else inf] if pieces else []
-    for piece, end in zip(pieces, ends, strict=True):
+    behind = [*pieces[1:], pieces[0] if period > 0.0 else None] if pieces else []
+    for piece, end, after in zip(pieces, ends, behind, strict=True):
         # what repeats comes again after 0 s
         first = piece.start if period > 0.0 else max(piece.start, 0.0)
         for time in _times(piece, first, end) if end > first else ():
             value = piece_value(piece, time)
+            if after is not None and time == end:
+                value = _joined(piece, value, time, piece_value(after, after.start))
             if isfinite(value):
                 yield Reached(time, value)
+
+
+def _joined(piece: Segment, value: float, time: float, after: float) -> float:
+    """The value at the end of a piece: that with which the next one begins, where it goes on without a jump."""
+    size = abs(piece.c0) + abs(piece.c1) * (abs(piece.start) + abs(time))
+    if abs(value - after) <= ROUND_OFF * (size + abs(after)):
+        return after
+    return value if abs(value) > NOTHING * size else 0.0
 
 
 def _times(piece: Segment, first: float, end: float) -> Iterator[float]:

@@ -163,7 +163,11 @@ inline void pack_all(Run& ws) {
     pack(ws, d, d < ne ? 0 : forward, block);
     const bool first = d >= ne || ws.sys.element_way[d] == 0;
     const bool settles = d < ne ? is_settling(ws.sys.element_kind[d]) : is_settling_law(ws.sys.contact_law[d - ne]);
-    const bool crossed = d < ne ? crosses(ws.sys.element_kind[d], -1) : crosses(0, ws.sys.contact_law[d - ne]);
+    const bool switches = d < ne ? crosses(ws.sys.element_kind[d], -1) : crosses(0, ws.sys.contact_law[d - ne]);
+    // where it is without a past, in the middle of the step
+    const bool follows =
+        settles && d < ne && edge_count(ws, d) == 0 && ws.branch[d].states == 0 && ws.branch[d].ways == 1;
+    const bool crossed = switches && !follows;
     f.massless[d] = 0;
     const auto row = rate_row(ws.sys, d);
     for (int k = 0; k < row.n; ++k) f.massless[d] = f.massless[d] != 0 || ws.sys.massless[row.column[k]] != 0;

@@ -78,33 +78,60 @@ struct Parting : OwnScale {
   static int component(const Workspace<T>& ws, const Hit& hit) {
     return int(ws.sys.elements) + ws.held.redundant[hit.index];
   }
-  /// Parted again at the same instant: a decision has let nothing go, so little does it accelerate. What holds least of
-  /// the slip that is left slips.
+  /// Work against the torques that contacts have left, were one of them to slip so much, per time; without the sign of
+  /// the slip that it would have.
+  template <class T>
+  static double left_against(const Workspace<T>& ws, int c, double slip) {
+    if (slip == 0) return 0;
+    if (is_rigid(ws, c)) return infinity;
+    T lower, upper;
+    ws.loads.of[c] < 0 ? bounds_of_held(ws, c, lower, upper)
+                       : void((lower = -static_torque(ws, c, forward), upper = static_torque(ws, c, backward)));
+    const double torque = value(ws.event_context.torque[c]);
+    return larger(slip > 0 ? torque - value(lower) : value(upper) - torque, 0.0) * abs(slip);
+  }
+  /// Of a driven set: what each contact would slip, were independent contact a to take all of the slip of redundant
+  /// contact s, or each redundant one its own where a is below zero. `f` takes contact and slip.
+  template <class T, class F>
+  static void each_slip(const Workspace<T>& ws, int s, int a, F&& f) {
+    const auto& h = ws.held;
+    const std::int64_t nc = ws.sys.contacts;
+    const double slip = value(h.rhs[s]), taken = a < 0 ? 0.0 : -slip / value(h.tie[s * nc + a]);
+    if (a >= 0) f(h.contact[a], taken);
+    for (int r = 0; r < h.n_redundant; ++r) {
+      const double own = value(h.rhs[r]) + (a < 0 ? 0.0 : value(h.tie[r * nc + a]) * taken);
+      f(h.redundant[r], abs(own) > 1e-6 * abs(slip) ? own : 0.0);
+    }
+  }
+  /// Parted again at the same instant: a decision has let nothing go, so little does it accelerate. Then those slip
+  /// that have the least left against it. docs/theory/events.md, rule 11
   template <class Phase, class T = typename Phase::Scalar>
   static void force(Phase& phase, const Hit& hit) {
     Workspace<T>& ws = phase.ws();
-    const int c = ws.held.redundant[hit.index];
-    const auto& last = ws.event_context;
-    const bool again = stands_since(ws, ws.guard.jumped_at) && last.cause == Cause::torque_limit && last.contact == c;
-    if (!again || is_rigid(ws, c)) return;
-    const double slip = slip_beside(phase.taken_form(), phase.taken_step(), c, hit.s);
+    Held<T>& h = ws.held;
+    const int s = hit.index;
+    const bool again = ws.guard.parted == h.redundant[s] && stands_since(ws, ws.guard.parted_at);
+    if (!again || is_rigid(ws, h.redundant[s])) return;
+    for (int r = 0; r < h.n_redundant; ++r)
+      h.rhs[r] = T(slip_beside(phase.taken_form(), phase.taken_step(), h.redundant[r], hit.s));
     double least = infinity;
-    int weakest = -1, way = 0;
-    auto weigh = [&](int contact, double moved) {
-      if (moved == 0 || is_rigid(ws, contact) || ws.loads.of[contact] >= 0) return;
-      T lower, upper;
-      bounds_of_held(ws, contact, lower, upper);
-      const double strength = (moved > 0 ? -value(lower) : value(upper)) / abs(moved);
-      if (strength < least) least = strength, weakest = contact, way = moved > 0 ? forward : backward;
-    };
-    weigh(c, slip);
-    for (int a = 0; a < ws.held.n; ++a)
-      weigh(ws.held.contact[a], -slip * value(ws.held.tie[hit.index * ws.sys.contacts + a]));
-    if (least < infinity) ws.contact.forced[weakest] = way;
+    int weakest = -1;
+    for (int a = -1; a < h.n; ++a) {
+      if (a >= 0 && value(h.tie[s * ws.sys.contacts + a]) == 0) continue;
+      double sum = 0;
+      each_slip(ws, s, a, [&](int c, double slip) { sum += left_against(ws, c, slip); });
+      if (sum < least) least = sum, weakest = a;
+    }
+    if (!(least < infinity)) return;
+    each_slip(ws, s, weakest, [&](int c, double slip) {
+      if (slip != 0) ws.contact.forced[c] = slip > 0 ? forward : backward;
+    });
   }
   template <class Phase>
   static void settle(Phase& phase, const Hit& hit) {
-    phase.decide(Cause::torque_limit, phase.ws().held.redundant[hit.index]);
+    auto& ws = phase.ws();
+    ws.guard.parted_at = ws.time, ws.guard.parted = ws.held.redundant[hit.index];
+    phase.decide(Cause::torque_limit, ws.guard.parted);
   }
 };
 

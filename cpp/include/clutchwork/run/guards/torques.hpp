@@ -94,7 +94,7 @@ double more_noise(const Workspace<T>& ws, int a, T capacity) {
 /// Margin of a locked contact where the torques were looked at last.
 template <class T>
 double margin_seen(const Workspace<T>& ws, int a) {
-  const T torque = ws.observed.carried[a], capacity = capacity_at(ws, ws.held.contact[a], torque);
+  const T torque = ws.observed.carried[a], capacity = capacity_left(ws, ws.held.contact[a], torque);
   return margin(ws, a, torque, capacity) + more_noise(ws, a, capacity);
 }
 
