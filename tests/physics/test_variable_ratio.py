@@ -330,7 +330,7 @@ def test_it_slips_between_the_housing_and_a_prescribed_shaft(start):
 
 
 def test_an_impulse_beside_a_freewheel_that_a_ratio_holds_keeps_momentum() -> None:
-    """The gear turns a light shaft with its support, whose freewheel to it has no slip at any speed: it takes no part."""
+    """The gear turns a light shaft with its support: a freewheel between them never slips, and takes no part."""
     d = cw.Driveline("light")
     one, other, third = (d.shaft(name, inertia=1.0) for name in ("one", "other", "third"))
     light = d.shaft("light", inertia=0.0, speed=60.0)
