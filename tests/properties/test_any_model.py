@@ -221,7 +221,7 @@ MENDED: dict[str, list[int]] = {
     "a sleeve at the tips of teeth whose command ends": [45009098],
     "a ratio that follows a driver, in the piece in which the driver is": [46017442, 46012086],
     "a motor at rest between ratios that hold it": [46002783],
-    "a pump whose pressures have died away": [46000164],
+    "a pump whose pressures are the same": [46000164, 48005900],
 }
 
 

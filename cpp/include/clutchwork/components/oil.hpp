@@ -53,15 +53,19 @@ S pump_filling(const S& inlet) {
 /// Pieces of a pump: the pressure rises through it, or falls.
 enum PumpPiece : int { rising, falling };
 
-/// Beyond zero, so that the piece does not follow round-off of a pressure that has died away [bar].
-inline constexpr double pump_slack = 1e-8;
+/// How far the pressure difference of a pump goes beyond zero before its piece ends, which does not follow what steps
+/// miss of the pressures [Pa].
+template <class S>
+S pump_slack(const S& outlet, const S& inlet) {
+  return (abs(outlet) + abs(inlet)) * S(1e-6) + S(1e-3);
+}
 
 /// Pressure difference the way it goes now [bar].
 template <class S>
-S pump_margin(int piece, const S& difference, int& who) {
+S pump_margin(int piece, const S& outlet, const S& inlet, int& who) {
   Least<S> least(who);
-  const S way = difference * S((piece == falling ? -1 : 1) / bar);
-  least.watch(least.rests ? way : way + S(pump_slack), 0);
+  const S way = piece == falling ? inlet - outlet : outlet - inlet;
+  least.watch((least.rests ? way : way + pump_slack(outlet, inlet)) / S(bar), 0);
   return least.margin();
 }
 

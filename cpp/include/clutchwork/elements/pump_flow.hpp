@@ -45,8 +45,8 @@ struct PumpFlow : declared::PumpFlow {
   }
 
   template <class T, class S>
-  static S margin(const Params<T>& p, const At<S>& at, int& who) {
-    return pump_margin(at.piece, drop(p, at), who);
+  static S margin(const Params<T>&, const At<S>& at, int& who) {
+    return pump_margin(at.piece, at.input[Input::outlet], at.input[Input::inlet], who);
   }
   template <class T>
   static int cross(const Params<T>&, const At<T>& at, int, T*) {

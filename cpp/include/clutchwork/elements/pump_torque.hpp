@@ -25,7 +25,7 @@ struct PumpTorque : declared::PumpTorque {
 
   template <class T, class S>
   static S margin(const Params<T>&, const At<S>& at, int& who) {
-    return pump_margin(at.piece, difference(at), who);
+    return pump_margin(at.piece, at.input[Input::outlet], at.input[Input::inlet], who);
   }
   template <class T>
   static int cross(const Params<T>&, const At<T>& at, int who, T*) {
@@ -38,7 +38,9 @@ struct PumpTorque : declared::PumpTorque {
   template <class T>
   static int settle(const Params<T>&, const At<T>& at) {
     const auto u = value(difference(at));
-    return abs(u) <= pump_slack * bar ? at.piece : u < 0 ? falling : rising;
+    const auto slack = value(pump_slack(at.input[Input::outlet], at.input[Input::inlet]));
+    if (abs(u) <= slack) return at.piece;
+    return u < 0 ? falling : rising;
   }
 
  private:
