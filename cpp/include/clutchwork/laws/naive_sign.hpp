@@ -3,8 +3,8 @@
 
 namespace clutchwork::laws {
 
-/// Stribeck curve times the sign of the slip, without a state of rest: shows how solvers stall. Slip that is round-off of
-/// what others hold at rest has no sign.
+/// Stribeck curve times the sign of the slip, without a state of rest: shows how solvers stall. Slip that is round-off
+/// of what others hold at rest has no sign.
 struct NaiveSign : declared::NaiveSign {
   template <class T>
   struct Params : StribeckCurve<T> {};
