@@ -78,15 +78,14 @@ struct Parting : OwnScale {
   static int component(const Workspace<T>& ws, const Hit& hit) {
     return int(ws.sys.elements) + ws.held.redundant[hit.index];
   }
-  /// Work against the torques that contacts have left, were one of them to slip so much, per time; without the sign of
-  /// the slip that it would have.
+  /// Torque that a contact has left against a slip, times the slip [W].
   template <class T>
   static double left_against(const Workspace<T>& ws, int c, double slip) {
     if (slip == 0) return 0;
     if (is_rigid(ws, c)) return infinity;
     T lower, upper;
-    ws.loads.of[c] < 0 ? bounds_of_held(ws, c, lower, upper)
-                       : void((lower = -static_torque(ws, c, forward), upper = static_torque(ws, c, backward)));
+    bounds_of_held(ws, c, lower, upper);
+    if (ws.loads.of[c] >= 0) lower = -static_torque(ws, c, forward), upper = static_torque(ws, c, backward);
     const double torque = value(ws.event_context.torque[c]);
     return larger(slip > 0 ? torque - value(lower) : value(upper) - torque, 0.0) * abs(slip);
   }
