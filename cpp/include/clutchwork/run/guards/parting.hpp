@@ -102,17 +102,10 @@ struct Parting : OwnScale {
       f(h.redundant[r], abs(own) > 1e-6 * abs(slip) ? own : 0.0);
     }
   }
-  /// Parted again at the same instant: a decision has let nothing go, so little does it accelerate. Then those slip
-  /// that have the least left against it. docs/theory/events.md, rule 11
-  template <class Phase, class T = typename Phase::Scalar>
-  static void force(Phase& phase, const Hit& hit) {
-    Workspace<T>& ws = phase.ws();
-    Held<T>& h = ws.held;
-    const int s = hit.index;
-    const bool again = ws.guard.parted == h.redundant[s] && stands_since(ws, ws.guard.parted_at);
-    if (!again || is_rigid(ws, h.redundant[s])) return;
-    for (int r = 0; r < h.n_redundant; ++r)
-      h.rhs[r] = T(slip_beside(phase.taken_form(), phase.taken_step(), h.redundant[r], hit.s));
+  /// Those slip that have the least left against the slip of redundant contact s.
+  template <class T>
+  [[gnu::noinline]] static void force_weakest(Workspace<T>& ws, int s) {
+    const Held<T>& h = ws.held;
     double least = infinity;
     int weakest = -1;
     for (int a = -1; a < h.n; ++a) {
@@ -125,6 +118,19 @@ struct Parting : OwnScale {
     each_slip(ws, s, weakest, [&](int c, double slip) {
       if (slip != 0) ws.contact.forced[c] = slip > 0 ? forward : backward;
     });
+  }
+  /// Parted again at the same instant: a decision has let nothing go, so little does it accelerate.
+  /// docs/theory/events.md, rule 11
+  template <class Phase, class T = typename Phase::Scalar>
+  static void force(Phase& phase, const Hit& hit) {
+    Workspace<T>& ws = phase.ws();
+    Held<T>& h = ws.held;
+    const int s = hit.index;
+    const bool again = ws.guard.parted == h.redundant[s] && stands_since(ws, ws.guard.parted_at);
+    if (!again || is_rigid(ws, h.redundant[s])) return;
+    for (int r = 0; r < h.n_redundant; ++r)
+      h.rhs[r] = T(slip_beside(phase.taken_form(), phase.taken_step(), h.redundant[r], hit.s));
+    force_weakest(ws, s);
   }
   template <class Phase>
   static void settle(Phase& phase, const Hit& hit) {
