@@ -155,3 +155,16 @@ def test_names_of_the_package() -> None:
     assert {"fit_law", "fit_csv", "FitResult"} <= set(dir(clutchwork.fit))
     with pytest.raises(AttributeError, match="did you mean 'fit_law'"):
         clutchwork.fit.fit_lw  # noqa: B018
+
+
+def test_all_mistakes_of_a_call_are_named_at_once() -> None:
+    wrong: dict[str, Any] = {"load": "much", "loss": "huge", "rest": -1.0, "confidence": 2.0, "free": ["statik"]}
+    with pytest.raises(FitError) as found:
+        fit_law(LAW, **{**good(), **wrong})
+    assert [one.quantity for one in found.value.problems] == ["load", "loss", "free", "rest", "confidence"]
+    assert "did you mean 'static'?" in str(found.value)
+
+
+def test_no_samples_are_not_said_to_be_zero() -> None:
+    with pytest.raises(FitError, match=r"^time has 0 values"):
+        fit_law(LAW, [], [], [], load=5.0)

@@ -163,7 +163,7 @@ def test_a_brake_on_a_prescribed_mass_does_not_keep_a_cam_locked(turning: bool) 
 @pytest.mark.parametrize(
     ("capacities", "load", "torques"),
     [
-        # 9 Nm of the brake: it has 5 of 10 left, the clutches 8 and 3 together with the same 5
+        # the brake already carries 5 of its 10 N m the way it would slip, the clutches nothing of their 11
         ((10.0, 8.0, 3.0), 5.0, (-9.0, 4.0 * 8.0 / 11.0, 4.0 * 3.0 / 11.0)),
         ((5.0, 5.0, 5.0), 0.0, (-4.5, 2.25, 2.25)),
         ((10.0, 8.0), 9.0, (-9.0, 0.0)),
