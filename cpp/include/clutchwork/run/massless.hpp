@@ -89,44 +89,6 @@ double imbalance(Form& form, Step<Form>& step, bool& moved) {
   return square;
 }
 
-/// Speeds without inertia to where their torques balance, from the present ones on: Newton over the pieces of their
-/// elements, with shorter steps where a whole one misses. True where they have jumped. docs/theory/reduction.md (9)
-template <class Form>
-bool balance_massless(Form& form, Step<Form>& step) {
-  constexpr int least = 8, most = 64, halvings = 30;
-  constexpr double small = 1e-9, jump = 1e-4;
-  using T = typename Form::Scalar;
-  auto& ws = form.ws;
-  if (!any_massless(form)) return false;
-  const int nz = form.nz();
-  T *b = step.slope(), *y = step.y0();
-  for (int i = 0; i < nz; ++i) step.y1()[i] = y[i];
-  double fastest = 0, change = infinity, way = 0;
-  for (int i = 0; i < nz; ++i) fastest = larger(fastest, abs(value(y[i])));
-  bool moved = false;
-  double missing = imbalance(form, step, moved);
-  for (int round = 0; round < least || (round < most && change > small * (1 + fastest)); ++round) {
-    change = 0;
-    for (int i = 0; i < nz; ++i) b[i] = is_massless(ws, i) ? step.f0()[i] : T(0);
-    if (!solve_held(form, b)) break;
-    for (int i = 0; i < nz; ++i) change = larger(change, abs(value(b[i])));
-    for (int i = 0; i < nz; ++i) y[i] += b[i];
-    const bool close = change <= small * (1 + fastest);
-    double share = 1, left = imbalance(form, step, moved);
-    for (int k = 0; k < halvings && !close && !(left < missing); ++k) {
-      share *= 0.5;
-      for (int i = 0; i < nz; ++i) y[i] -= T(share) * b[i];
-      left = imbalance(form, step, moved);
-    }
-    missing = left;
-  }
-  for (int i = 0; i < nz; ++i) way = larger(way, abs(value(y[i] - step.y1()[i])));
-  expand(form, y, ws.v);
-  ws.guard.zero = slip_tolerance(ws);
-  if (moved) list_lines(ws);
-  return way > jump * (1 + fastest);
-}
-
 /// What is missing in a balance of torques, and their sizes.
 struct Imbalance {
   double missing = 0, size = 0;
@@ -149,6 +111,106 @@ Imbalance imbalance_of(Form& form, const T* d) {
     if (is_massless(ws, i)) found.missing = larger(found.missing, abs(value(d[i])));
   }
   return found;
+}
+
+/// Newton over the pieces of the elements at speeds without inertia, from the present ones on, with shorter steps where
+/// a whole one misses. Whether it has found their balance; `moved`: pieces have changed.
+template <class Form>
+bool find_balance(Form& form, Step<Form>& step, double fastest, bool& moved) {
+  constexpr int least = 8, most = 64, halvings = 30;
+  constexpr double small = 1e-9, enough = 1e-6;
+  using T = typename Form::Scalar;
+  auto& ws = form.ws;
+  const int nz = form.nz();
+  T *b = step.slope(), *y = step.y0();
+  double change = infinity;
+  double missing = imbalance(form, step, moved);
+  for (int round = 0; round < least || (round < most && change > small * (1 + fastest)); ++round) {
+    change = 0;
+    for (int i = 0; i < nz; ++i) b[i] = is_massless(ws, i) ? step.f0()[i] : T(0);
+    if (!solve_held(form, b)) {
+      change = infinity;
+      break;
+    }
+    for (int i = 0; i < nz; ++i) change = larger(change, abs(value(b[i])));
+    for (int i = 0; i < nz; ++i) y[i] += b[i];
+    const bool close = change <= small * (1 + fastest);
+    double share = 1, left = imbalance(form, step, moved);
+    for (int k = 0; k < halvings && !close && !(left < missing); ++k) {
+      share *= 0.5;
+      for (int i = 0; i < nz; ++i) y[i] -= T(share) * b[i];
+      left = imbalance(form, step, moved);
+    }
+    missing = left;
+  }
+  if (change <= small * (1 + fastest)) return true;
+  observe(form, ws.time, y, b);
+  return !imbalance_of(form, b).exceeds(enough);
+}
+
+/// The speed i without inertia to where what drives it off ends, the way it is driven, as an ever smaller inertia would
+/// go; the first `from` of that may hold it back, as beside two balances that have just met. Whether there is such a
+/// place. docs/theory/reduction.md (9)
+template <class Form>
+bool run_off(Form& form, Step<Form>& step, int i, double way, double from, bool& moved) {
+  constexpr double near = 1e2, far = 1e12;
+  constexpr int halvings = 60;
+  using T = typename Form::Scalar;
+  T* y = step.y0();
+  const T start = y[i];
+  double at = from, before = 0;
+  auto is_driven = [&](double there) {
+    y[i] = start + T(way * there);
+    imbalance(form, step, moved);
+    return way * value(step.f0()[i]) > 0;
+  };
+  while (at < near * from && !is_driven(at)) at *= 2;
+  for (bool driven = at < near * from; driven && at < far; driven = is_driven(at)) before = at, at *= 2;
+  const bool ends = before > 0 && at < far;
+  for (int k = 0; k < halvings && ends; ++k) {
+    const double middle = 0.5 * (before + at);
+    (is_driven(middle) ? before : at) = middle;
+  }
+  if (!ends) y[i] = start;
+  return ends;
+}
+
+/// The speed without inertia in whose balance most is missing; one there is.
+template <class T>
+int least_balanced(const Workspace<T>& ws, const T* missing, int nz) {
+  int worst = -1;
+  for (int i = 0; i < nz; ++i) {
+    if (is_massless(ws, i) && (worst < 0 || abs(value(missing[i])) > abs(value(missing[worst])))) worst = i;
+  }
+  return worst;
+}
+
+/// Speeds without inertia to where their torques balance, from the present ones on: where Newton's method does not find
+/// that, one after the other runs off. True where they have jumped. docs/theory/reduction.md (9)
+template <class Form>
+bool balance_massless(Form& form, Step<Form>& step) {
+  constexpr double small = 1e-9, jump = 1e-4;
+  constexpr int tries = 16;
+  using T = typename Form::Scalar;
+  auto& ws = form.ws;
+  if (!any_massless(form)) return false;
+  const int nz = form.nz();
+  T* y = step.y0();
+  double fastest = 0, way = 0;
+  for (int i = 0; i < nz; ++i) step.y1()[i] = y[i], fastest = larger(fastest, abs(value(y[i])));
+  bool moved = false;
+  for (int k = 0; !find_balance(form, step, fastest, moved) && k < tries; ++k) {
+    // from where the motion stood, not from where the method went
+    for (int i = 0; i < nz && k == 0; ++i) y[i] = step.y1()[i];
+    imbalance(form, step, moved);
+    const int i = least_balanced(ws, step.f0(), nz);
+    if (!run_off(form, step, i, value(step.f0()[i]) < 0 ? -1 : 1, small * (1 + fastest), moved)) break;
+  }
+  for (int i = 0; i < nz; ++i) way = larger(way, abs(value(y[i] - step.y1()[i])));
+  expand(form, y, ws.v);
+  ws.guard.zero = slip_tolerance(ws);
+  if (moved) list_lines(ws);
+  return way > jump * (1 + fastest);
 }
 
 /// Speeds without inertia of y, inside of a step, to where their torques balance: an interpolant has them less exactly

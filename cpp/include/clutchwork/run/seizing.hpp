@@ -5,6 +5,7 @@
 #include <clutchwork/motion/lost_ratios.hpp>
 #include <clutchwork/motion/mesh_loads.hpp>
 #include <clutchwork/run/event.hpp>
+#include <clutchwork/run/massless.hpp>
 #include <clutchwork/run/output.hpp>
 #include <clutchwork/run/passive_events.hpp>
 #include <clutchwork/run/snapshot.hpp>
@@ -58,6 +59,32 @@ bool stops_running_away(Phase& phase) {
   return true;
 }
 
+/// A balance of a speed without inertia has met another one and is none any more, as beside an eddy-current brake
+/// behind its peak: the speed goes where it is driven. Whether it does. docs/theory/reduction.md (9)
+template <class Phase, class T = typename Phase::Scalar>
+bool leaves_fold(Phase& phase) {
+  // in the last digits of the time both balances are this share of the speed apart
+  constexpr double beside = 1e-4;
+  Workspace<T>& ws = phase.ws();
+  auto& form = phase.form();
+  auto& step = phase.step();
+  if (ws.guard.balanced_at == ws.time) return false;
+  rest_step(form, step);
+  export_state(form, step.y0());
+  note_before(form, step, 0.0);
+  bool leaves = false, moved = false;
+  for (int i = 0; i < form.nz() && !leaves; ++i) {
+    if (!is_massless(ws, i)) continue;
+    const double from = beside * (1 + abs(value(step.y0()[i])));
+    leaves = run_off(form, step, i, 1, from, moved) || run_off(form, step, i, -1, from, moved);
+  }
+  if (!leaves) return false;
+  keep_prescribed(ws), keep_ratios(ws);
+  ws.last_step = 0;
+  phase.decide_again();
+  return true;
+}
+
 /// A step has become too short, at its start. `finite`: its error was a number. The inputs may be those of a stage.
 template <class Phase, class T = typename Phase::Scalar>
 [[gnu::noinline]] void end_collapsed(Phase& phase, bool finite) {
@@ -78,6 +105,9 @@ template <class Phase, class T = typename Phase::Scalar>
       ws.detail.component = int(ws.sys.elements) + c;
       return phase.leave(Status::unbalanced);
     }
+  }
+  if constexpr (!Phase::FormType::small && !has_tangents<T>) {
+    if (finite && leaves_fold(phase)) return;
   }
   blame(phase.form(), phase.step());
   phase.leave(ws.detail.component >= 0 || !finite ? Status::not_finite : Status::step_collapse);
