@@ -45,3 +45,26 @@ def test_bristles_as_steep_as_one_likes_are_noted(order: float, is_noted: bool) 
     law = cw.Leuven(**CURVE, elements=((2e-5, 0.4), (1e-4, 0.6)), order=order)
     gradient = cw.differentiable(driven(law), 0.1, of="s.speed", by="t.torque").gradient()
     assert any("is below 1" in note for note in gradient.notes) == is_noted
+
+
+def test_a_jump_at_the_instant_of_an_event_has_no_derivative_behind_it() -> None:
+    """A gear with losses turns its load where its speed passes zero, and the slip of the clutch on it does so there."""
+    d = cw.Driveline("geared")
+    s, load = d.shaft("s", inertia=0.3), d.shaft("load", speed=-4.0)
+    d.add(cw.LossyGear("gear", input=s, output=load, ratio=2.0, efficiency=0.7, backward_efficiency=0.4))
+    d.add(cw.Torque("t", shaft=s, torque=100.0))
+    d.add(cw.Clutch("c", base=d.housing, follower=s, friction=cw.NaiveSign(**CURVE), gain=1e-3, pressure=1e4))
+    gradient = cw.differentiable(d, 0.3, of=[cw.at("s.speed", 0.01), "s.speed"], by="load.speed").gradient()
+    before, behind = gradient.matrix[:, 0]
+    # nearly that of the ratio: the coefficient hardly depends on the slip
+    assert before == pytest.approx(2.0, rel=0.1) and np.isnan(behind)
+    assert "jumps with the sign of its slip" in gradient.problems[0]
+
+
+@pytest.mark.parametrize("torque", (5.0, -5.0))
+def test_a_slip_that_begins_at_rest_has_not_passed_it(torque: float) -> None:
+    d = cw.Driveline("from rest")
+    s = d.shaft("s", inertia=0.1)
+    d.add(cw.Torque("t", shaft=s, torque=torque))
+    d.add(cw.Clutch("c", base=d.housing, follower=s, friction=cw.NaiveSign(**CURVE), gain=1e-3, pressure=1e4))
+    assert cw.differentiable(d, 0.1, of="s.speed", by="t.torque").gradient().matrix[0, 0] == pytest.approx(1, rel=0.05)

@@ -222,6 +222,9 @@ MENDED: dict[str, list[int]] = {
     "a ratio that follows a driver, in the piece in which the driver is": [46017442, 46012086],
     "a motor at rest between ratios that hold it": [46002783],
     "a pump whose pressures are the same": [46000164, 48005900],
+    "a balance of a shaft without inertia that ends, or that Newton's method misses": [48017897, 44017833, 45015416],
+    "rows inside of steps of a motion that follows a steep law": [47014208],
+    "the first of two decisions at an instant at which the room for events ends": [43002237],
 }
 
 
@@ -265,6 +268,12 @@ def test_a_start_that_contradicts_a_ratio_is_no_fault() -> None:
     del made["shaft"][0]["speed"]
     assert agree.run(made).status == "done"
     assert judge.ending(made, run)
+    # the speed of one side may follow from a gear
+    made["shaft"].append({"name": "c", "inertia": 0.2, "speed": 0.0})
+    made["element"].append({"name": "g", "type": "gear", "input": "a", "output": "c", "ratio": 2.0})
+    run = agree.run(made)
+    assert run.status == "jammed"
+    assert not judge.ending(made, run)
 
 
 def test_a_jam_beside_a_light_shaft_has_its_own_sentence() -> None:

@@ -12,6 +12,7 @@ import clutchwork as cw
 from clutchwork.assembly.wiring import HOUSING
 from clutchwork.run.failure import JAMS
 from support.any_model import agree, rows
+from support.any_model.model import refused
 from support.any_model.seen import Fault
 from support.any_model.signals import sides
 from support.any_model.values import Plain
@@ -35,6 +36,8 @@ DEAD = 1e-3
 AMPLE = 10
 # s before a ratio that loses a speed, within which steps may collapse
 SOON = 1e-4
+# what a driveline is refused with whose start contradicts a ratio
+CONTRADICTED = "at the start, which contradicts"
 # of the speed of a shaft that a row loses, what is left in it: the last row is a step short of that
 VANISHED = 1e-2
 
@@ -149,24 +152,17 @@ def _left(ways: list[Any], node: int, front: float, back: float) -> float:
 
 
 def contradicts(made: Plain, base: Any) -> bool:
-    """Whether a run jams where it starts as given speeds do not fit the ratio of a transmission there: without one of
-    them it starts."""
+    """Whether a run jams where it starts as given speeds do not fit the ratio of a transmission there: a driveline that
+    has this ratio for good is refused."""
     if base.status != "jammed" or len(base.rows) or JAMS["ratio"][0] not in base.message:
         return False
-    ways = [branch for branch in base.wiring.elements if repr(branch.component.name) in base.message]
-    nodes = base.wiring.nodes
-    named = {nodes[node].name for branch in ways for node in branch.direction if node != HOUSING}
-    given = {one["name"] for kind in ("shaft", "mass") for one in made[kind] if "speed" in one}
-    if not named <= given:
-        return False
-
-    def free(name: str) -> Plain:
-        return {
-            kind: [{k: v for k, v in one.items() if k != "speed" or one["name"] != name} for one in made[kind]]
-            for kind in ("shaft", "mass")
-        }
-
-    return any(len(agree.run({**made, **free(name)}).rows) for name in sorted(named))
+    known = {branch.component.name: getattr(branch.component, "ratio", None) for branch in base.wiring.elements}
+    begin = base.options.t_start
+    elements = [
+        {**one, "ratio": sides(known[one["name"]], begin)[1]} if isinstance(known.get(one["name"]), cw.Signal) else one
+        for one in made["element"]
+    ]
+    return CONTRADICTED in refused({**made, "element": elements})
 
 
 def passes_zero(base: Any) -> bool:

@@ -194,7 +194,7 @@ class Together {
     kernel_.doubt(&form_, &step_, &doubtful);
     bool work = false, rows = false;
     for (int i = 0; i < n_lanes; ++i) {
-      alone_[i] = !active_[i] || !counts_[i] || is_left_alone(i);
+      alone_[i] = !active_[i] || !counts_[i] || is_left_alone(i) || follows_closely(i);
       if (alone_[i]) continue;
       work = work || (has_work(run_of(i)) && ws_.out.n_worked > 0);
       rows = rows || parts_ > 0;
@@ -221,6 +221,16 @@ class Together {
     if (!one.follows_jump()) return false;
     get_jacobian(one.ws_, ws_, i);
     return may_settle_within(one.ws_, one.reach_);
+  }
+
+  /// Whether rows inside the step of a lane must be settled, each on its own.
+  bool follows_closely(int i) {
+    const Workspace<double>& run = run_of(i);
+    for (int k = 0; k < ws_.n_branches; ++k) {
+      const double mobility = run.geometry.own[run.branch[k].direction];
+      if (is_steep(mobility, ws_.jacobian.partial[k].by_rate[i], pace(i).reach_)) return true;
+    }
+    return false;
   }
 
   /// Whether what is wanted of any step is more than the lanes give.

@@ -260,6 +260,8 @@ Status advance_by_events(Workspace<T>& ws, double t_end, Sink& sink, bool to_eve
     if (status == Status::running && to_event && ws.events.n > 0) return Status::done;
     if (status == Status::running) status = reach_phase(ws);
   }
+  // a phase that follows at the same instant shows the row that counts, in the next call
+  if (status == Status::events_full && ws.fresh_phase) sink.restart(ws.time);
   return status;
 }
 

@@ -30,7 +30,7 @@ bool any_massless(const Form& form) {
 /// of all others b is the change itself in the full form, and that times their huge inertia else. False: it is
 /// singular.
 template <class Form, class T = typename Form::Scalar>
-bool solve_held(Form& form, T* b) {
+[[gnu::noinline]] bool solve_held(Form& form, T* b) {
   Workspace<T>& ws = form.ws;
   if constexpr (Form::full) {
     if (!form.factor_held()) return false;
@@ -76,12 +76,18 @@ bool follow_pieces(Form& form, const T* y) {
   return moved;
 }
 
+/// Partial derivatives at y, out of line: they are taken for few instants.
+template <class Form, class T = typename Form::Scalar>
+[[gnu::noinline]] void linearize_apart(Form& form, double t, const T* y, T* d, T* dt) {
+  linearize(form, t, y, d, dt, form.ws.step_start);
+}
+
 /// What is missing in the balance at y, whose pieces hold; `moved`: others do than before.
 template <class Form>
-double imbalance(Form& form, Step<Form>& step, bool& moved) {
+[[gnu::noinline]] double imbalance(Form& form, Step<Form>& step, bool& moved) {
   auto& ws = form.ws;
   moved = follow_pieces(form, step.y0()) || moved;
-  linearize(form, ws.time, step.y0(), step.f0(), step.dt0(), ws.step_start);
+  linearize_apart(form, ws.time, step.y0(), step.f0(), step.dt0());
   double square = 0;
   for (int i = 0; i < form.nz(); ++i) {
     if (is_massless(ws, i)) square += value(step.f0()[i]) * value(step.f0()[i]);
@@ -116,7 +122,7 @@ Imbalance imbalance_of(Form& form, const T* d) {
 /// Newton over the pieces of the elements at speeds without inertia, from the present ones on, with shorter steps where
 /// a whole one misses. Whether it has found their balance; `moved`: pieces have changed.
 template <class Form>
-bool find_balance(Form& form, Step<Form>& step, double fastest, bool& moved) {
+[[gnu::noinline]] bool find_balance(Form& form, Step<Form>& step, double fastest, bool& moved) {
   constexpr int least = 8, most = 64, halvings = 30;
   constexpr double small = 1e-9, enough = 1e-6;
   using T = typename Form::Scalar;
@@ -152,7 +158,7 @@ bool find_balance(Form& form, Step<Form>& step, double fastest, bool& moved) {
 /// go; the first `from` of that may hold it back, as beside two balances that have just met. Whether there is such a
 /// place. docs/theory/reduction.md (9)
 template <class Form>
-bool run_off(Form& form, Step<Form>& step, int i, double way, double from, bool& moved) {
+[[gnu::noinline]] bool run_off(Form& form, Step<Form>& step, int i, double way, double from, bool& moved) {
   constexpr double near = 1e2, far = 1e12;
   constexpr int halvings = 60;
   using T = typename Form::Scalar;
@@ -239,10 +245,10 @@ template <class Form, class T = typename Form::Scalar>
 /// Rates of change of the speeds without inertia along the motion, of which d has the others and those of the states:
 /// their balance at (t, y) holds on. docs/theory/reduction.md (9)
 template <class Form, class T = typename Form::Scalar>
-void change_massless(Form& form, double t, const T* y, T* d, T* b, T* dt) {
+[[gnu::noinline]] void change_massless(Form& form, double t, const T* y, T* d, T* b, T* dt) {
   Workspace<T>& ws = form.ws;
   const int nz = form.nz(), n = form.n();
-  linearize(form, t, y, b, dt, ws.step_start);
+  linearize_apart(form, t, y, b, dt);
   for (int i = 0; i < nz; ++i) b[i] = T(0);
   if constexpr (Form::full) {
     for (int i = 0; i < nz; ++i) {

@@ -196,7 +196,9 @@ void fill_numbers(Form& form, Step<Form>& step, double s, double s_end, R* row) 
   const bool fitted = has_work(ws) && s > 0 && !(inside && ws.out.lacks_work > 0);
   if (fitted) work_until(form, step, s, s_end);
   ws.out.until = s;
-  const Snapshot<T> shot = take_snapshot(form, step, s);
+  // at an end the motion goes on from the row, or has come from it
+  const double instant = 1e-12 * (abs(step.t) + step.h);
+  const Snapshot<T> shot = take_snapshot(form, step, s, s * step.h > instant && (s_end - s) * step.h > instant);
   fill_nodes(ws, shot, row);
   for (int i = 0; i < sys.states; ++i) row[ws.row.state + i] = shown<R>(shot.y[form.nz() + i]);
   fill_work(ws, fitted, row);
@@ -235,6 +237,7 @@ bool fill_read(Form& form, Step<Form>& step, double s, double* row) {
   Workspace<T>& ws = form.ws;
   const RowLayout& at = ws.row;
   const ReadNumbers& inside = ws.out.inside;
+  if (step.calls->stiff && follows_closely(ws, step.h)) return false;
   step.calls->observe(form, step, s);
   double sum = 0;
   for (std::int64_t i = 0; i < inside.n; ++i) {

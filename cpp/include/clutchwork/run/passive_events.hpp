@@ -146,12 +146,11 @@ bool chatters(Workspace<T>& ws) {
     const int k = ws.guard.chattering[i];
     const double rate = value(ws.step_start.rate[k]);
     int& heading = ws.heading[ws.branch[k].direction];
-    if (rate * heading >= 0) continue;
-    heading = -heading;
-    // the step before is behind the start of the next one
-    if constexpr (has_tangents<T>) {
-      if (rate * value(ws.step_end.rate[k]) < 0) note_passed(ws, ws.branch[k].direction);
-    }
+    const int before = heading;
+    if (rate == 0 || rate * before > 0) continue;
+    heading = rate > 0 ? forward : backward;
+    if (before == 0) continue;
+    if constexpr (has_tangents<T>) note_passed(ws, ws.branch[k].direction);
     // a slip that was driven through zero goes on; one that chatters is pushed back
     if (rate * value(ws.step_start.slope[k]) >= 0) continue;
     ws.detail.component = ws.branch[k].direction;

@@ -103,6 +103,7 @@ class Phase : public StepSize<typename Form::Scalar> {
   void collapse() { end_collapsed(*this, error_ <= 1e300); }
   /// To where the phase stands.
   [[gnu::noinline]] void leave(Status status) {
+    if (status == Status::rows_full || status == Status::events_full) take_back_start();
     // a run that is left, to make room for rows, goes on as if it were not
     const double zero = ws_.guard.zero;
     export_state(form_, step_.y0());
@@ -115,8 +116,9 @@ class Phase : public StepSize<typename Form::Scalar> {
   }
 
   [[gnu::noinline]] void begin() {
-    const bool fresh = ws_.fresh_phase, event = fresh && !ws_.stiffened, linearized = ws_.linearized && !fresh;
-    ws_.linearized = false;
+    const bool fresh = ws_.fresh_phase, event = fresh && !ws_.stiffened, shows = ws_.shows_start;
+    const bool linearized = ws_.linearized && !fresh && !shows;
+    ws_.linearized = ws_.shows_start = false;
     if (fresh) ws_.guard.zero = slip_tolerance(ws_);
     if constexpr (!Form::small) {
       if (fresh) form_.solve_mass(ws_.reduced.y);
@@ -136,12 +138,22 @@ class Phase : public StepSize<typename Form::Scalar> {
     }
     ws_.fresh_phase = ws_.stiffened = false;
     // at a knot the row is the right limit, which comes after it
-    const Status shown = ws_.time < ws_.in.next_knot ? emit_start(form_, step_, sink_, event) : Status::running;
+    const Status shown =
+        ws_.time < ws_.in.next_knot ? emit_start(form_, step_, sink_, event || shows) : Status::running;
     if (shown != Status::running) return leave(shown);
     // counted as one, so that a run counts alike wherever it is left
     linearized ? void(++ws_.statistics.jacobians) : linearize_start();
     if constexpr (has_tangents<T>) note_borders_here(event);
     h_ = first_length(event);
+  }
+
+  /// The row at the start of a phase that has not moved yet is written where there is room for those that follow: the
+  /// modes may be decided again at this instant, and the last row of it is the one that counts.
+  void take_back_start() {
+    if (sink_.steps == 0 || sink_.behind || sink_.restarted != ws_.time || sink_.restart_row == 0) return;
+    if (sink_.at != sink_.restart_row + 1) return;
+    --sink_.at;
+    ws_.shows_start = true;
   }
 
   /// Borders on which the phase may begin.

@@ -50,7 +50,7 @@ void powers_at(Form& form, Step<Form>& step, double s, Add&& add) {
   const int nd = ws.n_directions, np = int(ws.sys.prescribed);
   Snapshot<T> shot{};
   if (np > 0 || ws.sys.meters > 0)
-    shot = take_snapshot(form, step, s);
+    shot = take_snapshot(form, step, s, true);
   else
     step.calls->observe(form, step, s);
   for (int k = 0; k < ws.n_branches; ++k) add(ws.branch[k].direction, ws.observed.torque[k] * ws.observed.rate[k]);

@@ -4,6 +4,8 @@
 #include <clutchwork/motion/shared.hpp>
 #include <clutchwork/workspace.hpp>
 
+#include <type_traits>
+
 /// Processes and flows that switch between smooth pieces: docs/theory/events.md, rule 12.
 namespace clutchwork {
 
@@ -21,11 +23,22 @@ decltype(auto) visit_process_or_flow(const Workspace<T>& ws, int c, F&& f) {
                     [&](auto tag) { return f(tag, ws.params + sys.flow_param[i], int(sys.flow_input[i]), 0); });
 }
 
+/// A function of the rate of a direction and its time derivative, whose kind processes need not be compiled for.
+template <class T>
+struct RateOf {
+  const void* of;
+  T (*read)(const void* of, int d, T& slope);
+  template <class F>
+  RateOf(const F& f)
+      : of(&f), read([](const void* by, int d, T& slope) { return T((*static_cast<const F*>(by))(d, slope)); }) {}
+  T operator()(int d, T& slope) const { return read(of, d, slope); }
+};
+
 /// The n inputs from a reference on at time t with their time derivatives, for given states; rate(d, slope) is that of
 /// direction d.
-template <class T, class Rate>
-void place_process_inputs(const Workspace<T>& ws, int first, double t, const T* state, const T* rates, Rate&& rate,
-                          int n, Dual<T, 1>* out) {
+template <class T>
+[[gnu::noinline]] void place_process_inputs(const Workspace<T>& ws, int first, double t, const T* state, const T* rates,
+                                            const RateOf<T>& rate, int n, Dual<T, 1>* out) {
   const auto& sys = ws.sys;
   for (int i = 0; i < n; ++i) {
     const int ref = first + i, code = sys.input_refs[ref], j = code - int(sys.inputs);
@@ -47,9 +60,9 @@ void place_process_inputs(const Workspace<T>& ws, int first, double t, const T* 
 }
 
 /// How far process c is from leaving its piece, and its time derivative; `who` would leave.
-template <class T, class Rate>
-Dual<T, 1> process_margin(const Workspace<T>& ws, int c, double t, const T* state, const T* rates, Rate&& rate,
-                          int& who) {
+template <class T>
+[[gnu::noinline]] Dual<T, 1> process_margin(const Workspace<T>& ws, int c, double t, const T* state, const T* rates,
+                                            const std::type_identity_t<RateOf<T>>& rate, int& who) {
   return visit_process_or_flow(ws, c, [&](auto tag, const T* params, int ref, int first) {
     using E = typename decltype(tag)::type;
     using S = Dual<T, 1>;

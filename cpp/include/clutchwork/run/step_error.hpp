@@ -1,8 +1,8 @@
 #pragma once
 #include <clutchwork/motion/dynamics.hpp>
 #include <clutchwork/motion/form.hpp>
+#include <clutchwork/run/correction.hpp>
 #include <clutchwork/run/integrator/memory.hpp>
-#include <clutchwork/run/integrator/rodas5p.hpp>
 #include <clutchwork/run/massless.hpp>
 #include <clutchwork/run/step.hpp>
 #include <clutchwork/workspace.hpp>
@@ -36,20 +36,14 @@ double error_until(Form& form, Step<Form>& step, double s) {
 /// docs/theory/events.md, rule 7
 template <class Form, class T = typename Form::Scalar>
 double error_inside(Form& form, Step<Form>& step) {
-  T *y = step.point(), *slope = step.slope(), *miss = step.u();
-  const int nz = form.nz(), n = form.n();
-  if (!Rodas5P::factor(form, 1 / (Rodas5P::gamma * step.h))) return infinity;
+  T *y = step.point(), *miss = step.u();
   interpolate(form, step, 0.5, y);
   evaluate(form, step.t + 0.5 * step.h, y, miss);
-  interpolate_slope(form, step, 0.5, slope);
-  for (int i = 0; i < n; ++i) slope[i] = -slope[i];
-  form.add_mass_times(T(1), slope, miss);
-  for (int i = nz; i < n; ++i) miss[i] += slope[i];
-  Rodas5P::solve(form, miss);
+  if (!correction(form, step, 0.5, -1, miss, step.slope())) return infinity;
   if constexpr (!Form::small) {
     // speeds without inertia are brought to their balance in each row
     const Compressed<T>& mass = form.ws.rows.mass;
-    for (int i = 0; i < nz; ++i) {
+    for (int i = 0; i < form.nz(); ++i) {
       if (mass.first[i] == mass.first[i + 1]) miss[i] = T(0);
     }
   }

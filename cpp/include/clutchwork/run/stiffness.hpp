@@ -30,4 +30,17 @@ bool may_settle_within(const Workspace<T>& ws, double h) {
   return ws.sys.shared > 0 || h * fastest_rate(ws) >= long_step;
 }
 
+/// Whether a rate settles within a step of length h by its own torque alone.
+inline bool is_steep(double mobility, double by_rate, double h) { return mobility * abs(by_rate) * h > long_step; }
+
+/// Whether that of any branch does. Of the full form, whose partial derivatives are elsewhere, nothing is known here.
+template <class T>
+bool follows_closely(const Workspace<T>& ws, double h) {
+  for (int k = 0; k < ws.n_branches; ++k) {
+    const double mobility = value(ws.geometry.own[ws.branch[k].direction]);
+    if (is_steep(mobility, value(ws.jacobian.partial[k].by_rate), h)) return true;
+  }
+  return false;
+}
+
 }  // namespace clutchwork

@@ -7,13 +7,28 @@
 /// Lists of what the guards must watch in the present modes: docs/theory/events.md.
 namespace clutchwork {
 
+/// The sign that the slip of a law has which jumps with it; none at a start at rest. An event may have turned it, and
+/// at one where it is zero it is still that from before.
+template <class T>
+void head_where_it_slips(Workspace<T>& ws, int direction) {
+  const double rate = value(rate_of(ws, direction));
+  int& heading = ws.heading[direction];
+  if (ws.guard.is_placed) return;
+  if (abs(rate) > slip_tolerance(ws))
+    heading = rate > 0 ? forward : backward;
+  else if (ws.statistics.steps == 0)
+    heading = 0;
+}
+
 /// Branches whose laws jump with the slip, and open contacts at rest.
 template <class T>
 void list_laws(Workspace<T>& ws) {
   ws.guard.n_chattering = ws.guard.n_undirected = 0;
   for (int k = 0; k < ws.n_branches; ++k) {
     const int law = ws.branch[k].law;
-    if (law >= 0 && is_chattering_law(law)) ws.guard.chattering[ws.guard.n_chattering++] = k;
+    if (law < 0 || !is_chattering_law(law)) continue;
+    ws.guard.chattering[ws.guard.n_chattering++] = k;
+    head_where_it_slips(ws, ws.branch[k].direction);
   }
   for (int k = ws.n_branches; k < ws.n_rates; ++k) ws.guard.n_undirected += ws.branch[k].sign == 0;
 }
