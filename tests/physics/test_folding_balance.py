@@ -18,18 +18,23 @@ def resisting(speed: float) -> float:
     return 2 * PEAK * ratio / (1 + ratio**2) + DAMPING * speed
 
 
-def driven(torque: cw.SignalLike, speed: float = 0.0) -> cw.System:
-    """The shaft with a brake, a damper and a torque."""
+def add(model: cw.Driveline, name: str, torque: cw.SignalLike, *, damping: float = DAMPING, **of_shaft: float) -> None:
+    """A shaft with a brake, a damper and a torque."""
+    shaft = model.shaft(name, **of_shaft)
+    model.add(cw.EddyCurrentBrake(f"{name} brake", shaft=shaft, nominal_torque=PEAK, nominal_speed=PEAK_SPEED))
+    model.add(cw.Damper(f"{name} damper", base=model.housing, follower=shaft, damping=damping))
+    model.add(cw.Torque(f"{name} drive", shaft=shaft, torque=torque))
+
+
+def driven(torque: cw.SignalLike, speed: float = 0.0, inertia: float = 0.0) -> cw.Driveline:
+    """One of them."""
     model = cw.Driveline()
-    shaft = model.shaft("shaft", speed=speed)
     model.shaft("other", inertia=1.0)
-    model.add(cw.EddyCurrentBrake("brake", shaft=shaft, nominal_torque=PEAK, nominal_speed=PEAK_SPEED))
-    model.add(cw.Damper("damper", base=model.housing, follower=shaft, damping=DAMPING))
-    model.add(cw.Torque("drive", shaft=shaft, torque=torque))
-    return model.assemble()
+    add(model, "shaft", torque, speed=speed, inertia=inertia)
+    return model
 
 
-@pytest.mark.parametrize("way", (1, -1))
+@pytest.mark.parametrize("way", [1, -1])
 def test_a_balance_jumps_where_it_ends(way: int) -> None:
     """Up at the peak, and down again at the valley, each to the speed at which the same torque balances."""
     peak = minimize_scalar(lambda w: -resisting(w), bounds=(5, 15), method="bounded", options={"xatol": 1e-12}).x
@@ -39,7 +44,7 @@ def test_a_balance_jumps_where_it_ends(way: int) -> None:
     after = brentq(lambda w: resisting(w) - RISE * up, 2 * peak, 1e4)
     back = brentq(lambda w: resisting(w) - resisting(valley), 0, peak)
     drive = cw.Table(((0.0, 0.0), (top, way * RISE * top), (2 * top, 0.0)))
-    result = cw.simulate(driven(drive), 2 * top)
+    result = driven(drive).simulate(2 * top)
     speed, rows = way * result["shaft.speed"], result.time
     # of the speed, beside a fold, the root of what a time of the tolerance makes
     assert result.status == "done"
@@ -47,22 +52,40 @@ def test_a_balance_jumps_where_it_ends(way: int) -> None:
         inside = int(np.searchsorted(rows, at + 1e-9))
         assert np.isclose(rows[inside - 1], at, rtol=1e-8)
         jump = int(np.argmax(np.abs(np.diff(speed[inside - 3 : inside + 3])))) + inside - 3
-        assert np.isclose(speed[jump], left, rtol=1e-3) and np.isclose(speed[jump + 1], right, rtol=1e-3)
+        assert np.isclose(speed[jump], left, rtol=1e-3)
+        assert np.isclose(speed[jump + 1], right, rtol=1e-3)
     torque = np.array([resisting(w) for w in speed])
     given = np.interp(rows, (0.0, top, 2 * top), (0.0, RISE * top, 0.0))
     assert np.abs(torque - given).max() < 1e-6 * RISE * top
 
 
-@pytest.mark.parametrize("speed", (-500.0, -57.1, 57.1, 500.0))
-def test_a_shaft_beyond_a_peak_runs_to_its_balance(speed: float) -> None:
-    """Its only balance is rest, and no step of Newton's method from beyond the valley leads there."""
-    result = cw.simulate(driven(0.0, speed), 0.1)
-    assert result.status == "done" and np.abs(result["shaft.speed"]).max() < 1e-9
+@pytest.mark.parametrize("speed", [-500.0, -57.1, -30.0, 12.0, 25.0, 57.1, 500.0])
+@pytest.mark.parametrize("torque", [0.0, 100.0, -100.0])
+def test_a_shaft_begins_at_the_balance_that_its_torques_drive_it_to(torque: float, speed: float) -> None:
+    """Of three balances at 100 N m the one in the middle does not hold, and the others are where a shaft of next to no
+    inertia goes from either side."""
+    result, light = (driven(torque, speed, inertia).simulate(1.0) for inertia in (0.0, 1e-6))
+    assert result.status == "done"
+    # the light one comes to its balance within 1e-5 s
+    assert result["shaft.speed"][0] == pytest.approx(light["shaft.speed"][-1], rel=1e-6, abs=1e-6)
+
+
+@pytest.mark.parametrize("share", [1.0, 1.0 + 1e-10, 1.01])
+def test_shafts_alike_jump_together(share: float) -> None:
+    """Both wheels of an axle, which nothing but the same torque joins."""
+    model, drive = cw.Driveline(), cw.Table(((0.0, 0.0), (4.0, RISE * 4.0), (8.0, 0.0)))
+    add(model, "left", drive)
+    add(model, "right", drive, damping=share * DAMPING)
+    result = model.simulate(8.0)
+    assert result.status == "done"
+    apart = np.abs(result["left.speed"] - result["right.speed"]) > 0.1 * np.abs(result["left.speed"]).max()
+    # but for the times between their jumps: dampers differ by 1 % at 11 rad/s of the peak and 31 rad/s of the valley
+    assert np.sum(np.diff(result.time)[apart[1:]]) <= 1.5 * (11.0 + 31.0) * DAMPING * (share - 1.0) / RISE + 1e-6
 
 
 def test_derivatives_end_at_a_fold() -> None:
     """When it jumps depends on the torque; nothing carries that, and no gradient is made up behind it."""
     system = driven(cw.Table(((0.0, 0.0), (4.0, 160.0))))
-    f = cw.differentiable(system, 4.0, of={"speed": "shaft.speed"}, by=["damper.damping"])
+    f = cw.differentiable(system, 4.0, of={"speed": "shaft.speed"}, by=["shaft damper.damping"])
     with pytest.raises(cw.ClutchworkError, match="collapsed"):
         f.gradient([DAMPING])

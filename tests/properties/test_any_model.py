@@ -224,7 +224,7 @@ MENDED: dict[str, list[int]] = {
     "a pump whose pressures are the same": [46000164, 48005900],
     "a balance of a shaft without inertia that ends, or that Newton's method misses": [48017897, 44017833, 45015416],
     "rows inside of steps of a motion that follows a steep law": [47014208],
-    "the first of two decisions at an instant at which the room for events ends": [43002237],
+    "the first of two decisions at an instant at which the event buffer is full": [43002237],
 }
 
 

@@ -157,12 +157,13 @@ def contradicts(made: Plain, base: Any) -> bool:
     if base.status != "jammed" or len(base.rows) or JAMS["ratio"][0] not in base.message:
         return False
     known = {branch.component.name: getattr(branch.component, "ratio", None) for branch in base.wiring.elements}
-    begin = base.options.t_start
-    elements = [
-        {**one, "ratio": sides(known[one["name"]], begin)[1]} if isinstance(known.get(one["name"]), cw.Signal) else one
-        for one in made["element"]
-    ]
-    return CONTRADICTED in refused({**made, "element": elements})
+    ratios = {
+        name: sides(ratio, base.options.t_start)[1] for name, ratio in known.items() if isinstance(ratio, cw.Signal)
+    }
+    named = [one["name"] for one in made["element"] if repr(one["name"]) in base.message]
+    elements = [{**one, **({"ratio": ratios[one["name"]]} if one["name"] in ratios else {})} for one in made["element"]]
+    lines = refused({**made, "element": elements}).splitlines()
+    return any(CONTRADICTED in line and name in line for line in lines for name in named)
 
 
 def passes_zero(base: Any) -> bool:

@@ -194,7 +194,7 @@ class Together {
     kernel_.doubt(&form_, &step_, &doubtful);
     bool work = false, rows = false;
     for (int i = 0; i < n_lanes; ++i) {
-      alone_[i] = !active_[i] || !counts_[i] || is_left_alone(i) || follows_closely(i);
+      alone_[i] = !active_[i] || !counts_[i] || is_left_alone(i) || (parts_ > 0 && follows_closely(i));
       if (alone_[i]) continue;
       work = work || (has_work(run_of(i)) && ws_.out.n_worked > 0);
       rows = rows || parts_ > 0;

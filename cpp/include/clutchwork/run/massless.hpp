@@ -155,12 +155,12 @@ template <class Form>
 }
 
 /// The speed i without inertia to where what drives it off ends, the way it is driven, as an ever smaller inertia would
-/// go; the first `from` of that may hold it back, as beside two balances that have just met. Whether there is such a
-/// place. docs/theory/reduction.md (9)
+/// go. It is looked at from `from` away on: two balances that have just met may hold it closer by. Whether there is
+/// such a place. docs/theory/reduction.md (9)
 template <class Form>
 [[gnu::noinline]] bool run_off(Form& form, Step<Form>& step, int i, double way, double from, bool& moved) {
   constexpr double near = 1e2, far = 1e12;
-  constexpr int halvings = 60;
+  constexpr int halvings = 40;
   using T = typename Form::Scalar;
   T* y = step.y0();
   const T start = y[i];
@@ -171,7 +171,13 @@ template <class Form>
     return way * value(step.f0()[i]) > 0;
   };
   while (at < near * from && !is_driven(at)) at *= 2;
-  for (bool driven = at < near * from; driven && at < far; driven = is_driven(at)) before = at, at *= 2;
+  // balances that are closer together than a tenth of their speed count as none
+  const double least = 1e-2 * (1 + abs(value(start)));
+  double stride = at;
+  for (bool driven = at < near * from; driven && at < far; driven = is_driven(at)) {
+    before = at, stride = smaller(2 * stride, 0.1 * (least + abs(value(y[i]))));
+    at += stride;
+  }
   const bool ends = before > 0 && at < far;
   for (int k = 0; k < halvings && ends; ++k) {
     const double middle = 0.5 * (before + at);
@@ -181,7 +187,7 @@ template <class Form>
   return ends;
 }
 
-/// The speed without inertia in whose balance most is missing; one there is.
+/// The speed without inertia in whose balance most is missing; there is at least one.
 template <class T>
 int least_balanced(const Workspace<T>& ws, const T* missing, int nz) {
   int worst = -1;
@@ -189,6 +195,29 @@ int least_balanced(const Workspace<T>& ws, const T* missing, int nz) {
     if (is_massless(ws, i) && (worst < 0 || abs(value(missing[i])) > abs(value(missing[worst])))) worst = i;
   }
   return worst;
+}
+
+/// Whether a balance of speeds without inertia holds them: beside it each is driven back, whatever the others do. Else
+/// Newton's method has found what no motion stays at.
+template <class Form>
+bool holds(Form& form, Step<Form>& step, bool& moved) {
+  using T = typename Form::Scalar;
+  T* y = step.y0();
+  bool all = true;
+  for (int i = 0; i < form.nz() && all; ++i) {
+    if (!is_massless(form.ws, i)) continue;
+    const T balance = y[i];
+    const double aside = 1e-6 * (1 + abs(value(balance)));
+    auto driven = [&](double way) {
+      y[i] = balance + T(way);
+      imbalance(form, step, moved);
+      return value(step.f0()[i]);
+    };
+    all = !(driven(aside) > 0 && driven(-aside) < 0);
+    y[i] = balance;
+  }
+  imbalance(form, step, moved);
+  return all;
 }
 
 /// Speeds without inertia to where their torques balance, from the present ones on: where Newton's method does not find
@@ -202,21 +231,36 @@ bool balance_massless(Form& form, Step<Form>& step) {
   if (!any_massless(form)) return false;
   const int nz = form.nz();
   T* y = step.y0();
-  double fastest = 0, way = 0;
-  for (int i = 0; i < nz; ++i) step.y1()[i] = y[i], fastest = larger(fastest, abs(value(y[i])));
+  double fastest = 0;
+  int n_massless = 0;
+  for (int i = 0; i < nz; ++i) {
+    step.y1()[i] = y[i];
+    fastest = larger(fastest, abs(value(y[i])));
+    n_massless += is_massless(ws, i);
+  }
+  auto has_jumped = [&] {
+    double way = 0;
+    for (int i = 0; i < nz; ++i) way = larger(way, abs(value(y[i] - step.y1()[i])));
+    return way > jump * (1 + fastest);
+  };
   bool moved = false;
-  for (int k = 0; !find_balance(form, step, fastest, moved) && k < tries; ++k) {
+  for (int k = 0; k < tries; ++k) {
+    // a shaft alone goes to the first balance on its way; of several, which may be coupled, Newton's method finds one
+    const bool found = find_balance(form, step, fastest, moved) && (!has_jumped() || holds(form, step, moved));
+    if (found && (k > 0 || n_massless > 1 || !has_jumped())) break;
     // from where the motion stood, not from where the method went
     for (int i = 0; i < nz && k == 0; ++i) y[i] = step.y1()[i];
     imbalance(form, step, moved);
     const int i = least_balanced(ws, step.f0(), nz);
-    if (!run_off(form, step, i, value(step.f0()[i]) < 0 ? -1 : 1, small * (1 + fastest), moved)) break;
+    if (run_off(form, step, i, value(step.f0()[i]) < 0 ? -1 : 1, small * (1 + fastest), moved)) continue;
+    find_balance(form, step, fastest, moved);
+    break;
   }
-  for (int i = 0; i < nz; ++i) way = larger(way, abs(value(y[i] - step.y1()[i])));
+  const bool jumped = has_jumped();
   expand(form, y, ws.v);
   ws.guard.zero = slip_tolerance(ws);
   if (moved) list_lines(ws);
-  return way > jump * (1 + fastest);
+  return jumped;
 }
 
 /// Speeds without inertia of y, inside of a step, to where their torques balance: an interpolant has them less exactly

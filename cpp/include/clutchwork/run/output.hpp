@@ -196,7 +196,7 @@ void fill_numbers(Form& form, Step<Form>& step, double s, double s_end, R* row) 
   const bool fitted = has_work(ws) && s > 0 && !(inside && ws.out.lacks_work > 0);
   if (fitted) work_until(form, step, s, s_end);
   ws.out.until = s;
-  // at an end the motion goes on from the row, or has come from it
+  // the ends of a step are the motion itself
   const double instant = 1e-12 * (abs(step.t) + step.h);
   const Snapshot<T> shot = take_snapshot(form, step, s, s * step.h > instant && (s_end - s) * step.h > instant);
   fill_nodes(ws, shot, row);

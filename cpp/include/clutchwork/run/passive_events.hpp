@@ -146,6 +146,14 @@ bool chatters(Workspace<T>& ws) {
     const int k = ws.guard.chattering[i];
     const double rate = value(ws.step_start.rate[k]);
     int& heading = ws.heading[ws.branch[k].direction];
+    if constexpr (has_tangents<T>) {
+      // what has been at rest for a step has not slipped either way
+      const double zero = slip_tolerance(ws);
+      if (abs(rate) <= zero && abs(value(ws.step_end.rate[k])) <= zero) {
+        heading = 0;
+        continue;
+      }
+    }
     const int before = heading;
     if (rate == 0 || rate * before > 0) continue;
     heading = rate > 0 ? forward : backward;

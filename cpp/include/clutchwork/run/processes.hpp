@@ -23,7 +23,8 @@ decltype(auto) visit_process_or_flow(const Workspace<T>& ws, int c, F&& f) {
                     [&](auto tag) { return f(tag, ws.params + sys.flow_param[i], int(sys.flow_input[i]), 0); });
 }
 
-/// A function of the rate of a direction and its time derivative, whose kind processes need not be compiled for.
+/// A function that gives the rate of a direction and its time derivative, of whatever type: processes are compiled
+/// once.
 template <class T>
 struct RateOf {
   const void* of;

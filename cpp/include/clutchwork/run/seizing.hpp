@@ -59,24 +59,26 @@ bool stops_running_away(Phase& phase) {
   return true;
 }
 
-/// A balance of a speed without inertia has met another one and is none any more, as beside an eddy-current brake
-/// behind its peak: the speed goes where it is driven. Whether it does. docs/theory/reduction.md (9)
+/// Balances of speeds without inertia have met others and are none any more, as beside an eddy-current brake behind its
+/// peak: these speeds go where they are driven. Whether any does. docs/theory/reduction.md (9)
 template <class Phase, class T = typename Phase::Scalar>
 bool leaves_fold(Phase& phase) {
-  // in the last digits of the time both balances are this share of the speed apart
+  // in the last digits of the time both balances are this share of the speed apart; of an instant, as of several axles
   constexpr double beside = 1e-4;
+  constexpr int most = 8;
   Workspace<T>& ws = phase.ws();
   auto& form = phase.form();
   auto& step = phase.step();
-  if (ws.guard.balanced_at == ws.time) return false;
+  if (ws.guard.folded_at != ws.time) ws.guard.folded_at = ws.time, ws.guard.folds = 0;
+  if (++ws.guard.folds > most) return false;
   rest_step(form, step);
   export_state(form, step.y0());
   note_before(form, step, 0.0);
   bool leaves = false, moved = false;
-  for (int i = 0; i < form.nz() && !leaves; ++i) {
+  for (int i = 0; i < form.nz(); ++i) {
     if (!is_massless(ws, i)) continue;
     const double from = beside * (1 + abs(value(step.y0()[i])));
-    leaves = run_off(form, step, i, 1, from, moved) || run_off(form, step, i, -1, from, moved);
+    leaves = run_off(form, step, i, 1, from, moved) || run_off(form, step, i, -1, from, moved) || leaves;
   }
   if (!leaves) return false;
   keep_prescribed(ws), keep_ratios(ws);

@@ -4,12 +4,10 @@
 #include <clutchwork/contacts/locked.hpp>
 #include <clutchwork/motion/dynamics.hpp>
 #include <clutchwork/motion/lost_ratios.hpp>
-#include <clutchwork/motion/mesh_loads.hpp>
 #include <clutchwork/motion/shared.hpp>
 #include <clutchwork/run/correction.hpp>
 #include <clutchwork/run/integrator/memory.hpp>
 #include <clutchwork/run/massless.hpp>
-#include <clutchwork/run/stiffness.hpp>
 #include <clutchwork/workspace.hpp>
 
 /// Everything at one point of a step.
@@ -100,18 +98,17 @@ void behind_lost_tie(Form& form, Step<Form>& step, const Snapshot<T>& shot) {
   observe(form, later, shot.y, shot.d);
 }
 
-/// The state at s inside of a step, which was looked at, where one motion follows another closely, as behind a steep
-/// law: within the tolerance of the speeds its torque is open. One step of Newton's method for what the interpolant
-/// misses of the equations of motion. docs/theory/events.md, rule 7
+/// A state inside of a step, which was looked at, onto the equations of motion. docs/theory/events.md, rule 7
 template <class Form, class T = typename Form::Scalar>
-void settle_stiff(Form& form, Step<Form>& step, double s, const Snapshot<T>& shot) {
-  // of the torques
-  constexpr double enough = 1e-6;
-  T* change = step.k(6);
-  for (int i = 0; i < form.n(); ++i) change[i] = shot.d[i];
-  if (!correction(form, step, s, enough * torque_size(form.ws), change, step.k(7))) return;
-  for (int i = 0; i < form.n(); ++i) shot.y[i] += change[i];
-  observe(form, step.t + s * step.h, shot.y, shot.d);
+void settle_inside(Form& form, Step<Form>& step, double s, const Snapshot<T>& shot) {
+  if constexpr (has_tangents<T>) {
+    const double t = step.t + s * step.h, *settled = step.settled(step.image, t);
+    if (settled == nullptr) return;
+    for (int i = 0; i < form.n(); ++i) shot.y[i].v = settled[i];
+    observe(form, t, shot.y, shot.d);
+  } else {
+    settle_stiff(form, step, s, shot.y, shot.d);
+  }
 }
 
 /// State, torques of all directions and accelerations at s; output torques go to ws.out.torque. `settles`: the motion
@@ -125,11 +122,7 @@ Snapshot<T> take_snapshot(Form& form, Step<Form>& step, double s, bool settles =
   look_at(form, step, s, shot);
   if constexpr (Form::full) s = before_lost_tie(form, step, s, shot), behind_lost_tie(form, step, shot);
   const double t = step.t + s * step.h;
-  if constexpr (!has_tangents<T>) {
-    // the sign of a load, which friction follows, is that of the motion that goes on
-    const bool closely = Form::full ? form.ws.loads.n_sliding == 0 : follows_closely(form.ws, step.h);
-    if (settles && step.calls->stiff && closely) settle_stiff(form, step, s, shot);
-  }
+  if (settles) settle_inside(form, step, s, shot);
   if constexpr (Form::full) {
     // an interpolant keeps the ties of transmissions less exactly than the ends of a step do
     if (ws.ratios.n > 0 && s > 0 && s < 1 && step.h > 0) settle_ties(form, shot.y), observe(form, t, shot.y, shot.d);

@@ -39,7 +39,8 @@ double error_inside(Form& form, Step<Form>& step) {
   T *y = step.point(), *miss = step.u();
   interpolate(form, step, 0.5, y);
   evaluate(form, step.t + 0.5 * step.h, y, miss);
-  if (!correction(form, step, 0.5, -1, miss, step.slope())) return infinity;
+  residual(form, step, 0.5, miss, step.slope(), miss);
+  if (!correct(form, step.h, miss)) return infinity;
   if constexpr (!Form::small) {
     // speeds without inertia are brought to their balance in each row
     const Compressed<T>& mass = form.ws.rows.mass;

@@ -1,6 +1,7 @@
 #pragma once
 #include <clutchwork/components/slopes.hpp>
 #include <clutchwork/motion/dynamics.hpp>
+#include <clutchwork/run/correction.hpp>
 #include <clutchwork/run/integrator/memory.hpp>
 #include <clutchwork/run/integrator/rodas5p.hpp>
 #include <clutchwork/run/linear_step.hpp>
@@ -80,6 +81,8 @@ class Variation {
         step(form),
         slopes_(own, own_step, form, step) {
     step.calls = &calls_;
+    step_.image = this;
+    step_.settled = [](void* image, double t) { return static_cast<Variation*>(image)->settled_at(t); };
   }
 
   /// The image is where the run is, and has looked at it.
@@ -130,6 +133,16 @@ class Variation {
     T::over(ws_.moved.directions, [&](auto tag) { fit_slopes<typename decltype(tag)::type>(); });
     step_.dense = true;
     fit_values();
+  }
+  /// The values at time t inside the plain step, on the equations of motion; nullptr: as they are.
+  const double* settled_at(double t) {
+    double *y = step.k(3), *d = step.k(4);
+    const double share = (t - step.t) / step.h;
+    interpolate(form, step, share, y);
+    inputs_at(form.ws, t);
+    observe(form, t, y, d);
+    forget_factor();
+    return settle_stiff(form, step, share, y, d) ? y : nullptr;
   }
   /// Where no time passes.
   void rest() {

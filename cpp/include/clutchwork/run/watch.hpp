@@ -7,8 +7,8 @@
 /// Lists of what the guards must watch in the present modes: docs/theory/events.md.
 namespace clutchwork {
 
-/// The sign that the slip of a law has which jumps with it; none at a start at rest. An event may have turned it, and
-/// at one where it is zero it is still that from before.
+/// The sign of the slip of a law whose torque jumps with it: an event may have turned it. Where the slip is zero, the
+/// sign is that from before, none at a start at rest.
 template <class T>
 void head_where_it_slips(Workspace<T>& ws, int direction) {
   const double rate = value(rate_of(ws, direction));
@@ -30,7 +30,11 @@ void list_laws(Workspace<T>& ws) {
     ws.guard.chattering[ws.guard.n_chattering++] = k;
     head_where_it_slips(ws, ws.branch[k].direction);
   }
-  for (int k = ws.n_branches; k < ws.n_rates; ++k) ws.guard.n_undirected += ws.branch[k].sign == 0;
+  for (int k = ws.n_branches; k < ws.n_rates; ++k) {
+    ws.guard.n_undirected += ws.branch[k].sign == 0;
+    // what closes at rest has not slipped either way
+    if (is_chattering_law(ws.branch[k].law)) ws.heading[ws.branch[k].direction] = 0;
+  }
 }
 
 /// Guard of the slip of a contact: where it may lock.

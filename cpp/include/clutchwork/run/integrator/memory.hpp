@@ -42,6 +42,9 @@ struct Step {
   Real<T> t = 0, h = 0;
   bool dense = false;                      ///< it has an interpolant
   const StepCalls<Form>* calls = nullptr;  ///< of its phase
+  // of a run with derivatives: its values at time t inside the step on the equations of motion; nullptr: as they are
+  const double* (*settled)(void* image, double t) = nullptr;
+  void* image = nullptr;
 
   explicit Step(Form& form) : rows(form.ws, form.n()) {}
   CLUTCHWORK_HOT T* k(int i) { return rows.row(i); }
