@@ -30,10 +30,11 @@ void list_laws(Workspace<T>& ws) {
     ws.guard.chattering[ws.guard.n_chattering++] = k;
     head_where_it_slips(ws, ws.branch[k].direction);
   }
-  for (int k = ws.n_branches; k < ws.n_rates; ++k) {
-    ws.guard.n_undirected += ws.branch[k].sign == 0;
-    // what closes at rest has not slipped either way
-    if (is_chattering_law(ws.branch[k].law)) ws.heading[ws.branch[k].direction] = 0;
+  for (int k = ws.n_branches; k < ws.n_rates; ++k) ws.guard.n_undirected += ws.branch[k].sign == 0;
+  // what closes at rest has not slipped either way
+  for (int c = 0; c < ws.sys.contacts; ++c) {
+    const int d = int(ws.sys.elements) + c, law = int(ws.sys.contact_law[c]);
+    if (ws.branch_of[d] < 0 && law >= 0 && is_chattering_law(law)) ws.heading[d] = 0;
   }
 }
 
