@@ -43,6 +43,13 @@ struct Sink {
       restarted = t, restart_row = at;
     }
   }
+  /// Whether the last row is taken back, that at the start of a phase which has not moved yet: it is written where
+  /// there is room for those that follow, for the modes may be decided again at this instant.
+  bool takes_back(double t) {
+    if (steps == 0 || behind || restarted != t || restart_row == 0 || at != restart_row + 1) return false;
+    --at;
+    return true;
+  }
 };
 
 /// A number as a row shows it: plain, or with its derivatives.

@@ -103,7 +103,7 @@ class Phase : public StepSize<typename Form::Scalar> {
   void collapse() { end_collapsed(*this, error_ <= 1e300); }
   /// To where the phase stands.
   [[gnu::noinline]] void leave(Status status) {
-    if (status == Status::rows_full || status == Status::events_full) take_back_start();
+    if (status == Status::rows_full || status == Status::events_full) ws_.shows_start = sink_.takes_back(ws_.time);
     // a run that is left, to make room for rows, goes on as if it were not
     const double zero = ws_.guard.zero;
     export_state(form_, step_.y0());
@@ -145,15 +145,6 @@ class Phase : public StepSize<typename Form::Scalar> {
     linearized ? void(++ws_.statistics.jacobians) : linearize_start();
     if constexpr (has_tangents<T>) note_borders_here(event);
     h_ = first_length(event);
-  }
-
-  /// The row at the start of a phase that has not moved yet is written where there is room for those that follow: the
-  /// modes may be decided again at this instant, and the last row of it is the one that counts.
-  void take_back_start() {
-    if (sink_.steps == 0 || sink_.behind || sink_.restarted != ws_.time || sink_.restart_row == 0) return;
-    if (sink_.at != sink_.restart_row + 1) return;
-    --sink_.at;
-    ws_.shows_start = true;
   }
 
   /// Borders on which the phase may begin.

@@ -2,6 +2,7 @@
 #include <clutchwork/components/slopes.hpp>
 #include <clutchwork/motion/dynamics.hpp>
 #include <clutchwork/run/correction.hpp>
+#include <clutchwork/run/derivative_error.hpp>
 #include <clutchwork/run/integrator/memory.hpp>
 #include <clutchwork/run/integrator/rodas5p.hpp>
 #include <clutchwork/run/linear_step.hpp>
@@ -40,8 +41,6 @@ class Variation {
   static constexpr int few = 8, very_few = 4, lanes = T::lanes;
   // of a part: how far ahead the change of the slopes with time is looked at, twice; loose tolerances need one look
   static constexpr double ahead = 1e-3, loose = 1e-8;
-  // a direction may miss so much of itself in a part, of rtol: the error of the motion moves derivatives by more
-  static constexpr double allowed = 3;
 
   Form& form_;
   Step<Form>& step_;
@@ -64,6 +63,7 @@ class Variation {
 
  private:
   SlopesAlong<Form, Plain> slopes_;
+  const DerivativeError<T, Plain> errors_;
 
  public:
   Variation(Form& own, Step<Form>& own_step)
@@ -79,7 +79,8 @@ class Variation {
         look_once_(1e-2 * pow(own.ws.options.rtol, 0.4)),
         form(prepared(own.ws)),
         step(form),
-        slopes_(own, own_step, form, step) {
+        slopes_(own, own_step, form, step),
+        errors_{own.ws, form, step} {
     step.calls = &calls_;
     step_.image = this;
     step_.settled = [](void* image, double t) { return static_cast<Variation*>(image)->settled_at(t); };
@@ -425,7 +426,8 @@ class Variation {
     add_linear_at_end(missed, last);
     swap_jacobians();
     for (int i = 0; i < n; ++i) u[i] += missed[i], step_.y1()[i] = As<X>::number(0, u[i]);
-    return error_of<X>([&](int i) { return As<X>::seen(missed[i]); }, [&](int i) { return As<X>::seen(u[i]); });
+    return errors_.template of<X>([&](int i) { return As<X>::seen(missed[i]); },
+                                  [&](int i) { return As<X>::seen(u[i]); });
   }
 
   // -------------------------------------------------------------------------------------------------- of few numbers
@@ -484,7 +486,7 @@ class Variation {
     } else {
       record_.take(n, k, last);
     }
-    return error_of<X>([&](int i) { return k[7].get(i); }, [&](int i) { return last.get(i); });
+    return errors_.template of<X>([&](int i) { return k[7].get(i); }, [&](int i) { return last.get(i); });
   }
 
   /// The matrices of a part of length h; the image has the factor of its start, and is linearized at its end. f(m) at
@@ -578,54 +580,6 @@ class Variation {
     }
     form.add_mass_times(1 / h, mix, k);
     for (int i = nz; i < n; ++i) add_times(1 / h, mix[i], k[i]);
-  }
-
-  /// The largest size of a component so far: one that swings passes zero, where its derivatives are as large as before.
-  double largest_size(int component, double size) const {
-    double& most = ws_.moved.most[component];
-    return most = larger(most, size);
-  }
-  /// Components of two sets x(i) and y(i) of each direction, and their size in the motion, to f.
-  template <class X, class At, class Other, class F>
-  void each_component(At&& x, Other&& y, F&& f) const {
-    const Workspace<double>& plain = form.ws;
-    const int nv = int(plain.sys.speeds), nz = form.nz();
-    const double least = plain.options.atol / plain.options.rtol;
-    double fastest = 0;
-    for (int i = 0; i < nv; ++i) fastest = larger(fastest, plain.reduced.size[i]);
-    for (int i = 0; i < nv; ++i) {
-      auto moved = typename As<X>::Seen(0), other = moved;
-      each_share(form, i, [&](double z, int j) { moved += x(j) * z, other += y(j) * z; });
-      f(moved, other, largest_size(i, least + larger(plain.reduced.size[i], 1e-3 * fastest)));
-    }
-    for (int i = 0; i < form.ns(); ++i) {
-      const double most = larger(abs(step0(nz + i)), abs(step1(nz + i)));
-      f(x(nz + i), y(nz + i), largest_size(nv + i, plain.reduced.floor[i] / plain.options.rtol + most));
-    }
-  }
-  double step0(int i) const { return const_cast<Step<Plain>&>(step).y0()[i]; }
-  double step1(int i) const { return const_cast<Step<Plain>&>(step).y1()[i]; }
-
-  /// Error of the derivatives in units of the tolerance, each direction of the largest size that it has had.
-  /// docs/theory/gradients.md (21)
-  template <class X, class Missed, class End>
-  double error_of(Missed&& missed, End&& end) {
-    constexpr int seen = As<X>::count;
-    double sum[seen] = {}, size[seen], worst = 0;
-    const double* before = ws_.moved.largest;
-    double* reached = ws_.moved.reached;
-    for (int j = 0; j < seen; ++j) size[j] = ws_.moved.size[j];
-    each_component<X>(end, missed, [&](const auto& x, const auto& lost, double of) {
-      for (int j = 0; j < seen; ++j) reached[j] = larger(before[j], abs(As<X>::at(x, j)));
-      for (int j = 0; j < seen; ++j) size[j] = larger(size[j], reached[j] / of);
-      for (int j = 0; j < seen; ++j) sum[j] += (As<X>::at(lost, j) / of) * (As<X>::at(lost, j) / of);
-      before += T::seen, reached += T::seen;
-    });
-    const double count = double(ws_.sys.speeds + form.ns());
-    for (int j = 0; j < seen; ++j) {
-      if (size[j] > 0) worst = larger(worst, sqrt(sum[j] / count) / (allowed * ws_.options.rtol * size[j]));
-    }
-    return worst;
   }
 };
 
