@@ -352,6 +352,16 @@ Status emit_start(Form& form, Step<Form>& step, Sink& sink, bool fresh) {
   return emit(form, step, 0.0, step.t, sink);
 }
 
+/// The same where a phase begins, or goes on whose first row was taken back. At a knot the row is the right limit,
+/// which comes after it.
+template <class Form>
+Status emit_first(Form& form, Step<Form>& step, Sink& sink, bool event) {
+  auto& ws = form.ws;
+  const bool shows = event || ws.shows_start;
+  ws.shows_start = false;
+  return ws.time < ws.in.next_knot ? emit_start(form, step, sink, shows) : Status::running;
+}
+
 /// Whether speeds, accelerations, torques or states in the last row are others than in the row before it, by more than
 /// round-off; of a shaft without inertia, before it that of the interpolant, by more than that may miss.
 template <class T>

@@ -116,9 +116,9 @@ class Phase : public StepSize<typename Form::Scalar> {
   }
 
   [[gnu::noinline]] void begin() {
-    const bool fresh = ws_.fresh_phase, event = fresh && !ws_.stiffened, shows = ws_.shows_start;
-    const bool linearized = ws_.linearized && !fresh && !shows;
-    ws_.linearized = ws_.shows_start = false;
+    const bool fresh = ws_.fresh_phase, event = fresh && !ws_.stiffened;
+    const bool linearized = ws_.linearized && !fresh && !ws_.shows_start;
+    ws_.linearized = false;
     if (fresh) ws_.guard.zero = slip_tolerance(ws_);
     if constexpr (!Form::small) {
       if (fresh) form_.solve_mass(ws_.reduced.y);
@@ -137,9 +137,7 @@ class Phase : public StepSize<typename Form::Scalar> {
       if (event && leave_event(form_, step_)) balance_massless(form_, step_);
     }
     ws_.fresh_phase = ws_.stiffened = false;
-    // at a knot the row is the right limit, which comes after it
-    const Status shown =
-        ws_.time < ws_.in.next_knot ? emit_start(form_, step_, sink_, event || shows) : Status::running;
+    const Status shown = emit_first(form_, step_, sink_, event);
     if (shown != Status::running) return leave(shown);
     // counted as one, so that a run counts alike wherever it is left
     linearized ? void(++ws_.statistics.jacobians) : linearize_start();
