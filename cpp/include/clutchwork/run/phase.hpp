@@ -110,14 +110,14 @@ class Phase : public StepSize<typename Form::Scalar> {
     ws_.guard.zero = zero;
     // these leave between two steps
     const bool whole = status == Status::done || status == Status::rows_full || status == Status::events_full;
-    ws_.linearized = whole && tells_all(form_);
+    // a row at the start that is still to come is looked at anew
+    ws_.linearized = whole && !ws_.shows_start && tells_all(form_);
     status_ = status;
     over_ = true;
   }
 
   [[gnu::noinline]] void begin() {
-    const bool fresh = ws_.fresh_phase, event = fresh && !ws_.stiffened;
-    const bool linearized = ws_.linearized && !fresh && !ws_.shows_start;
+    const bool fresh = ws_.fresh_phase, event = fresh && !ws_.stiffened, linearized = ws_.linearized && !fresh;
     ws_.linearized = false;
     if (fresh) ws_.guard.zero = slip_tolerance(ws_);
     if constexpr (!Form::small) {
