@@ -70,6 +70,17 @@ def test_a_shaft_begins_at_the_balance_that_its_torques_drive_it_to(torque: floa
     assert result["shaft.speed"][0] == pytest.approx(light["shaft.speed"][-1], rel=1e-6, abs=1e-6)
 
 
+@pytest.mark.parametrize("speeds", [(12.0, 12.0), (12.0, 25.0), (25.0, 500.0), (-30.0, 12.0)])
+def test_two_shafts_begin_where_each_of_them_would(speeds: tuple[float, float]) -> None:
+    """At 100 N m a shaft below 20 rad/s goes down to 6.8 rad/s, one above it up to 73 rad/s."""
+    model = cw.Driveline()
+    for name, speed in zip("ab", speeds, strict=True):
+        add(model, name, 100.0, speed=speed)
+    run = model.simulate(0.1)
+    alone = [driven(100.0, speed).simulate(0.1)["shaft.speed"][0] for speed in speeds]
+    assert [run[f"{name}.speed"][0] for name in "ab"] == pytest.approx(alone, rel=1e-9)
+
+
 @pytest.mark.parametrize("share", [1.0, 1.0 + 1e-10, 1.01])
 def test_shafts_alike_jump_together(share: float) -> None:
     """Both wheels of an axle, which nothing but the same torque joins."""

@@ -46,9 +46,8 @@ struct Workspace {
   double time = 0;
   double last_step = 0;  ///< [s] last step that was not cut short
   bool started = false, fresh_phase = true;
-  bool shows_start = false;  ///< a phase that has begun has not shown its first row yet
-  bool stiffened = false;    ///< the phase goes on with another method
-  bool linearized = false;   ///< the derivatives are those where the run stands, since the end of the last call
+  bool stiffened = false;   ///< the phase goes on with another method
+  bool linearized = false;  ///< the derivatives are those where the run stands, since the end of the last call
   T *v = nullptr, *state = nullptr, *angle = nullptr, *work = nullptr, *prescribed_work = nullptr;
   T* supplied = nullptr;                     ///< [J] that each supply has given
   T* metered = nullptr;                      ///< [J] that has gone through each rigid line that is metered

@@ -187,16 +187,6 @@ template <class Form>
   return ends;
 }
 
-/// The speed without inertia in whose balance most is missing; there is at least one.
-template <class T>
-int least_balanced(const Workspace<T>& ws, const T* missing, int nz) {
-  int worst = -1;
-  for (int i = 0; i < nz; ++i) {
-    if (is_massless(ws, i) && (worst < 0 || abs(value(missing[i])) > abs(value(missing[worst])))) worst = i;
-  }
-  return worst;
-}
-
 /// Whether a balance of speeds without inertia holds them: beside it each is driven back, whatever the others do. Else
 /// Newton's method has found what no motion stays at.
 template <class Form>
@@ -220,12 +210,12 @@ bool holds(Form& form, Step<Form>& step, bool& moved) {
   return all;
 }
 
-/// Speeds without inertia to where their torques balance, from the present ones on: where Newton's method does not find
-/// that, one after the other runs off. True where they have jumped. docs/theory/reduction.md (9)
+/// Speeds without inertia to where their torques balance, from the present ones on: by Newton's method, else one after
+/// the other the way it is driven. True where they have jumped. docs/theory/reduction.md (9)
 template <class Form>
 bool balance_massless(Form& form, Step<Form>& step) {
   constexpr double small = 1e-9, jump = 1e-4;
-  constexpr int tries = 16;
+  constexpr int tries = 8;
   using T = typename Form::Scalar;
   auto& ws = form.ws;
   if (!any_massless(form)) return false;
@@ -244,17 +234,18 @@ bool balance_massless(Form& form, Step<Form>& step) {
     return way > jump * (1 + fastest);
   };
   bool moved = false;
-  for (int k = 0; k < tries; ++k) {
-    // a shaft alone goes to the first balance on its way; of several, which may be coupled, Newton's method finds one
-    const bool found = find_balance(form, step, fastest, moved) && (!has_jumped() || holds(form, step, moved));
-    if (found && (k > 0 || n_massless > 1 || !has_jumped())) break;
+  const bool found = find_balance(form, step, fastest, moved);
+  // a shaft alone goes to the first balance on its way; of several, which may be coupled, one that holds is right
+  if (!found || (has_jumped() && (n_massless == 1 || !holds(form, step, moved)))) {
     // from where the motion stood, not from where the method went
-    for (int i = 0; i < nz && k == 0; ++i) y[i] = step.y1()[i];
-    imbalance(form, step, moved);
-    const int i = least_balanced(ws, step.f0(), nz);
-    if (run_off(form, step, i, value(step.f0()[i]) < 0 ? -1 : 1, small * (1 + fastest), moved)) continue;
-    find_balance(form, step, fastest, moved);
-    break;
+    for (int i = 0; i < nz; ++i) y[i] = step.y1()[i];
+    for (int k = 0; k == 0 || (k < tries && !find_balance(form, step, fastest, moved)); ++k) {
+      for (int i = 0; i < nz; ++i) {
+        if (!is_massless(ws, i)) continue;
+        imbalance(form, step, moved);
+        run_off(form, step, i, value(step.f0()[i]) < 0 ? -1 : 1, small * (1 + fastest), moved);
+      }
+    }
   }
   const bool jumped = has_jumped();
   expand(form, y, ws.v);

@@ -43,13 +43,6 @@ struct Sink {
       restarted = t, restart_row = at;
     }
   }
-  /// Whether the last row is taken back, that at the start of a phase which has not moved yet: it is written where
-  /// there is room for those that follow, for the modes may be decided again at this instant.
-  bool takes_back(double t) {
-    if (steps == 0 || behind || restarted != t || restart_row == 0 || at != restart_row + 1) return false;
-    --at;
-    return true;
-  }
 };
 
 /// A number as a row shows it: plain, or with its derivatives.
@@ -350,16 +343,6 @@ Status emit_start(Form& form, Step<Form>& step, Sink& sink, bool fresh) {
     return Status::running;
   }
   return emit(form, step, 0.0, step.t, sink);
-}
-
-/// The same where a phase begins, or goes on whose first row was taken back. At a knot the row is the right limit,
-/// which comes after it.
-template <class Form>
-Status emit_first(Form& form, Step<Form>& step, Sink& sink, bool event) {
-  auto& ws = form.ws;
-  const bool shows = event || ws.shows_start;
-  ws.shows_start = false;
-  return ws.time < ws.in.next_knot ? emit_start(form, step, sink, shows) : Status::running;
 }
 
 /// Whether speeds, accelerations, torques or states in the last row are others than in the row before it, by more than

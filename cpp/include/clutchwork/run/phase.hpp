@@ -103,15 +103,13 @@ class Phase : public StepSize<typename Form::Scalar> {
   void collapse() { end_collapsed(*this, error_ <= 1e300); }
   /// To where the phase stands.
   [[gnu::noinline]] void leave(Status status) {
-    if (status == Status::rows_full || status == Status::events_full) ws_.shows_start = sink_.takes_back(ws_.time);
     // a run that is left, to make room for rows, goes on as if it were not
     const double zero = ws_.guard.zero;
     export_state(form_, step_.y0());
     ws_.guard.zero = zero;
     // these leave between two steps
     const bool whole = status == Status::done || status == Status::rows_full || status == Status::events_full;
-    // a row at the start that is still to come is looked at anew
-    ws_.linearized = whole && !ws_.shows_start && tells_all(form_);
+    ws_.linearized = whole && tells_all(form_);
     status_ = status;
     over_ = true;
   }
@@ -137,7 +135,8 @@ class Phase : public StepSize<typename Form::Scalar> {
       if (event && leave_event(form_, step_)) balance_massless(form_, step_);
     }
     ws_.fresh_phase = ws_.stiffened = false;
-    const Status shown = emit_first(form_, step_, sink_, event);
+    // at a knot the row is the right limit, which comes after it
+    const Status shown = ws_.time < ws_.in.next_knot ? emit_start(form_, step_, sink_, event) : Status::running;
     if (shown != Status::running) return leave(shown);
     // counted as one, so that a run counts alike wherever it is left
     linearized ? void(++ws_.statistics.jacobians) : linearize_start();

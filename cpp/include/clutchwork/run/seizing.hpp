@@ -63,14 +63,13 @@ bool stops_running_away(Phase& phase) {
 /// peak: these speeds go where they are driven. Whether any does. docs/theory/reduction.md (9)
 template <class Phase, class T = typename Phase::Scalar>
 bool leaves_fold(Phase& phase) {
-  // in the last digits of the time both balances are this share of the speed apart; of an instant, as of several axles
+  // in the last digits of the time both balances are this share of the speed apart
   constexpr double beside = 1e-4;
-  constexpr int most = 8;
   Workspace<T>& ws = phase.ws();
   auto& form = phase.form();
   auto& step = phase.step();
-  if (ws.guard.folded_at != ws.time) ws.guard.folded_at = ws.time, ws.guard.folds = 0;
-  if (++ws.guard.folds > most) return false;
+  if (ws.guard.folded_at == ws.time) return false;
+  ws.guard.folded_at = ws.time;
   rest_step(form, step);
   export_state(form, step.y0());
   note_before(form, step, 0.0);

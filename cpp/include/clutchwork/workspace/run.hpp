@@ -55,8 +55,7 @@ struct Guards {
   int reversals = 0;     ///< of slips that chatter
   int strained = 0;      ///< explicit steps in a row at the limit of their stability
   std::int64_t reversals_since = 0;
-  double folded_at = -infinity;  ///< [s] where balances of speeds without inertia have ended last, and how often
-  int folds = 0;
+  double folded_at = -infinity;    ///< [s] where balances of speeds without inertia have ended last
   double balanced_at = -infinity;  ///< [s] where speeds without inertia have jumped last, with a decision
   double jumped_at = -infinity;    ///< [s] where something has jumped last: the next step begins with what settles fast
   double parted_at = -infinity;    ///< [s] where prescribed speeds have parted a locked contact last
