@@ -196,9 +196,20 @@ class Words:
     system: System
     parameters: tuple[Tunable, ...]
     _charts: list[Chart] = field(default_factory=list, repr=False)
+    _last: list[tuple[bytes, tuple[Chart, Array]]] = field(default_factory=list, repr=False)
 
     def at(self, x: Array) -> tuple[Chart, Array]:
         """The words at a point, and how they follow from it; ModelError for values that the driveline refuses."""
+        key = x.tobytes()
+        # a gradient asks several times at one point
+        for known, found in self._last[:1]:
+            if known == key:
+                return found
+        found = self._at(x)
+        self._last[:] = [(key, found)]
+        return found
+
+    def _at(self, x: Array) -> tuple[Chart, Array]:
         self._check(x)
         for chart in self._charts:
             words = chart.words(x)
