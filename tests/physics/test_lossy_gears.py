@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 from itertools import permutations
-from math import atan, cos, pi, tan
+from math import atan, cos, pi, sqrt, tan
 
 import numpy as np
 import pytest
 from scipy.integrate import solve_ivp
+from scipy.optimize import brentq
 
 import clutchwork as cw
 from support.amount import seeds
@@ -178,6 +179,31 @@ def test_a_screw_slips_in_the_instant_in_which_its_load_passes_zero():
     assert leaves.time < grips.time < 0.5 * end * (1.0 + 2e-2)
     assert run["screw.speed"][-1] == 0.0
     assert residual(run) < 1e-8
+
+
+@pytest.mark.parametrize(("top", "bottom"), [(0.1, -0.1), (1.5, -1.5), (1.6, -1.5), (0.7, -1.2), (1.0, -0.1)])
+def test_a_screw_on_a_slope_that_levels_out_lets_go_at_one_slope(top, bottom):
+    """A motor turns a self-locking screw as soon as m g (sin a + c cos a) is little enough, however fast that passes
+    by: behind level ground the screw holds again."""
+    mass, torque, lead, radius, coefficient, rolling = 80.0, 1.0, 0.001, 0.03, 1.0, 0.012
+    d = cw.Driveline("screw")
+    screw, car = d.shaft("screw", inertia=1.0), d.mass("car", mass=mass)
+    d.add(cw.Torque("motor", shaft=screw, torque=torque))
+    slope = cw.Table(points=[(0.0, top), (1.0, bottom)])
+    d.add(cw.Vehicle("hill", mass=car, slope=slope, rolling_coefficient=rolling))
+    sizes = {"lead": lead, "radius": radius, "friction_coefficient": coefficient}
+    d.add(cw.Leadscrew("nut", screw=screw, mass=car, **sizes))
+    run = d.simulate(1.0)
+    driven = torque / (radius * tan(atan(lead / (2 * pi * radius)) + atan(coefficient / cos(0.349))))
+    share = driven / (mass * 9.80665)
+
+    def beyond(x):
+        return (x + rolling) / sqrt(1 + x * x) - share
+
+    let_go = brentq(beyond, -0.1, 0.1, xtol=1e-15)
+    assert len(run.events) > 0
+    # the instant is known to the round-off of loads that are 30 times larger
+    assert top + (bottom - top) * run.events[0].time == pytest.approx(let_go, rel=1e-10)
 
 
 def test_a_sprag_that_overruns_at_the_start_leaves_a_lossy_set_at_rest():

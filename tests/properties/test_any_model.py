@@ -225,6 +225,7 @@ MENDED: dict[str, list[int]] = {
     "a balance of a shaft without inertia that ends, or that Newton's method misses": [48017897, 44017833, 45015416],
     "rows inside of steps of a motion that follows a steep law": [47014208],
     "the first of two decisions at an instant at which the event buffer is full": [43002237],
+    "a set that gives way where its limit jumps": [46005397, 45013883],
 }
 
 

@@ -366,7 +366,7 @@ class Phase : public StepSize<typename Form::Scalar> {
       // whatever comes first ends a step of its own: this one has lost a speed, perhaps far from its start
       const bool early = passes_ && reach_ > shortest * larger(1e-2, ws_.time);
       hit.none() && !early ? jam(*this, taken_form().ws.ratios.jammed) : (error_ = much_missed, reject_and_shrink());
-    } else if (is_written || reach(hit.s)) {
+    } else if (is_written || reach(hit)) {
       hit.none() ? accept() : meet(hit);
       return is_written;
     }
@@ -443,13 +443,15 @@ class Phase : public StepSize<typename Form::Scalar> {
     reject();
   }
 
-  /// To the share s of the step, with rows and integrals, and with derivatives where there are some. False: the run
-  /// cannot go on.
-  CLUTCHWORK_INLINE bool reach(double s) {
+  /// To where the step ends, with rows and integrals, and with derivatives where there are some. False: the run cannot
+  /// go on.
+  CLUTCHWORK_INLINE bool reach(const Hit& hit) {
+    ws_.out.jumps_at = hit.held < 0 ? -1 : has_tangents<T> ? 1 : hit.s;
+    ws_.out.jumps_from = hit.held;
     if constexpr (has_tangents<T>)
-      return follow(s);
+      return follow(hit.s);
     else
-      return write(s);
+      return write(hit.s);
   }
 
   /// Derivatives along the step up to the share s, in as many parts as they need.
@@ -462,6 +464,7 @@ class Phase : public StepSize<typename Form::Scalar> {
       if (to < 0) return leave(Status::step_collapse), false;
       if (ws_.moved.parts++ >= ws_.options.max_steps) return leave(Status::too_many_steps), false;
       const double end = to == s ? time_at(s) : step_.t + step_.h;
+      ws_.out.jumps_from = 1 - (s - ws_.out.jumps_from) / (to - at);
       if constexpr (Form::full) keep_ties(form_, step_, end, step_.y1());
       if (!write_part(end)) return false;
       for (int i = 0; to < s && i < form_.n(); ++i) step_.y0()[i] = step_.y1()[i];

@@ -119,6 +119,7 @@ Snapshot<T> take_snapshot(Form& form, Step<Form>& step, double s, bool settles =
   const auto& sys = ws.sys;
   const int nv = int(sys.speeds), ne = int(sys.elements), nc = int(sys.contacts);
   Snapshot<T> shot{step.point(), step.slope(), ws.observed.rate, ws.out.v, ws.out.dv};
+  if (s == ws.out.jumps_at) s = ws.out.jumps_from;
   look_at(form, step, s, shot);
   if constexpr (Form::full) s = before_lost_tie(form, step, s, shot), behind_lost_tie(form, step, shot);
   const double t = step.t + s * step.h;

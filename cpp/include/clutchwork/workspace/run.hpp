@@ -105,6 +105,7 @@ struct Output {
   int lacks_angles = 0, lacks_work = 0;   ///< whether rows lack them: 1 inside of steps, 2 everywhere
   ReadNumbers read, inside;               ///< what is read of rows; of those in steps in which nothing happens
   double until = -1;                      ///< share of the step of the last row in it, -1: it has none
+  double jumps_at = -1, jumps_from = -1;  ///< shares at which torques jump, and where they are seen as before
   T *whole = nullptr, *halves = nullptr;  ///< work of each branch over a step and its halves
   T* missed = nullptr;                    ///< of each branch: what cubics miss of its power at the ends of a step
   double shown = 0;                       ///< [s] last row in a step

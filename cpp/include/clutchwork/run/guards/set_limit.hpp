@@ -21,6 +21,37 @@ T round_off(const Workspace<T>& ws) {
   return smaller(ws.step_start.noise[0], T(1e-12 * torque_size(ws)));
 }
 
+/// Lines of the bounds by which the set that was looked at last holds, as one number.
+template <class T>
+std::uint64_t lines_chosen(const Workspace<T>& ws) {
+  std::uint64_t code = 1;
+  for (int i = 0; i < 2 * int(ws.sys.loads); ++i) code = 31 * code + std::uint64_t(ws.set.line[i]);
+  return code;
+}
+
+/// Where a set gives way, by its limit load f, that holds at both ends of the step by other lines of its bounds, -1: not
+/// before `limit`. By one choice of lines it holds in between as well, so that it can only give way where the choice is
+/// another one, however short that takes.
+template <class T, class F>
+[[gnu::noinline]] double first_between_lines(const Workspace<T>& ws, F&& f, double limit) {
+  constexpr int halvings = 30, changes = 4;
+  f(limit);
+  const auto last = lines_chosen(ws);
+  double low = 0, above = f(0.0);
+  for (int k = 0; k < changes; ++k) {
+    const auto own = lines_chosen(ws);
+    if (own == last) break;
+    double high = limit;
+    for (int i = 0; i < halvings; ++i) {
+      const double middle = 0.5 * (low + high), room = f(middle);
+      if (room < 0) return locate(f, low, above, middle, room);
+      lines_chosen(ws) == own ? (low = middle, above = room) : high = middle;
+    }
+    low = high, above = f(low);
+  }
+  return -1;
+}
+
 /// Where the limit load of a set is reached that has contacts that follow loads: its limit load has kinks where a load
 /// changes its sign. Far from it at both ends, ahead of both and in the middle, it is taken to be far from it in
 /// between.
@@ -34,6 +65,7 @@ template <class Form>
   };
   const double before = value(ws.step_start.room[k]);
   hit.take(first_at_no_load(form, step, f, before, hit.s), k);
+  hit.take(first_between_lines(ws, f, hit.s), k);
   if (!ends_say_little(ws, hit) && least >= ample - 1 && f(0.5) >= ample - 1) return;
   hit.take(first_dip(f, before, value(ws.step_end.room[k]), hit.s), k);
 }
@@ -121,6 +153,22 @@ struct SetLimit : OwnScale {
       };
       const double s = first_crossing(f, before, after, hit.s);
       hit.take(s, k);
+    }
+    if (hit.what == hit.asked) see_held(form, step, hit);
+  }
+  /// Where a set is seen before a limit that jumps: at it no share of its members holds it.
+  template <class Form>
+  [[gnu::noinline]] static void see_held(Form& form, Step<Form>& step, Hit& hit) {
+    constexpr double bit = 4e-16, farthest = 1e-9;
+    auto& ws = form.ws;
+    auto room_at = [&](double s) {
+      torques_at(form, step, s);
+      return value(set_room(ws, hit.index, ws.observed.carried, round_off(ws), ws.loads.now));
+    };
+    if (room_at(hit.s) > -0.5) return;
+    for (double back = bit; back <= farthest && back < hit.s; back *= 2) {
+      const double room = room_at(hit.s - back);
+      if (room >= 0 && room < infinity) return void(hit.held = hit.s - back);
     }
   }
   template <class Form, class T = typename Form::Scalar>
