@@ -29,9 +29,9 @@ std::uint64_t lines_chosen(const Workspace<T>& ws) {
   return code;
 }
 
-/// Where a set gives way, by its limit load f, that holds at both ends of the step by other lines of its bounds, -1: not
-/// before `limit`. By one choice of lines it holds in between as well, so that it can only give way where the choice is
-/// another one, however short that takes.
+/// Where a set gives way, by its limit load f, that holds at both ends of the step by other lines of its bounds, -1:
+/// not before `limit`. By one choice of lines it holds in between as well, so that it can only give way where the
+/// choice is another one, however short that takes.
 template <class T, class F>
 [[gnu::noinline]] double first_between_lines(const Workspace<T>& ws, F&& f, double limit) {
   constexpr int halvings = 30, changes = 4;
