@@ -215,6 +215,21 @@ def test_held_at_rest_it_drives_whichever_way_its_command_turns(way):
     assert run["m.torque"] == pytest.approx(way * np.array([5.0, -20.0, -20.0, 20.0, -15.0]), rel=1e-12)
 
 
+@pytest.mark.parametrize("way", [1.0, -1.0])
+@pytest.mark.parametrize("point", [12.0, 15.0, 19.0])
+def test_held_at_rest_it_drives_beyond_a_point_of_its_losses(way, point):
+    """Its torque passes a point of the table beyond what its generator can do."""
+    d = cw.Driveline("held")
+    s = d.shaft("s")
+    d.add(cw.PrescribedSpeed("still", shaft=s, speed=0.0))
+    limits = {"max_torque": 20.0, "generator_torque": 10.0}
+    axes = {"speeds": SPEEDS, "torques": (5.0, point, 100.0), "losses": WATTS}
+    d.add(cw.ElectricMotor("m", shaft=s, command=cw.Ramp(height=way * 40.0, duration=1.0), **limits, **axes))
+    run = d.simulate(1.0)
+    # ends of pieces are found to 1e-12
+    assert run["m.torque"] == pytest.approx(way * np.minimum(40.0 * run.time, 20.0), rel=1e-11)
+
+
 @pytest.mark.parametrize("method", ["rodas5p", "dopri5"])
 @pytest.mark.parametrize("way", [1.0, -1.0])
 def test_driven_from_rest_against_its_command_it_brakes_at_once(way, method):

@@ -226,6 +226,9 @@ MENDED: dict[str, list[int]] = {
     "rows inside of steps of a motion that follows a steep law": [47014208],
     "the first of two decisions at an instant at which the event buffer is full": [43002237],
     "a set that gives way where its limit jumps": [46005397, 45013883],
+    "a gear that jams where a clutch locks within its tolerance": [49018683],
+    "a motor at rest whose torque passes a point of its losses": [52013004],
+    "a contact without friction that is at rest for an instant": [52014398],
 }
 
 

@@ -211,13 +211,15 @@ bool stop_within_tolerance(Workspace<T>& ws, int located, double still) {
       ws, still, [&](int c) { return ws.contact.mode[c] == locked && (c == located || !contact_one_way(ws, c)); });
 }
 
-/// A contact that follows a load and jams stops at once; the others that are locked stay so, but for freewheels.
-/// docs/theory/load-dependent.md, rule 4
+/// A contact that follows a load and jams stops at once; the others that are locked stay so, but for freewheels, and
+/// what has come to rest within a tolerance of its own stops too. docs/theory/load-dependent.md, rule 4
 template <class T>
-bool stop_jammed(Workspace<T>& ws, int jammed) {
+bool stop_jammed(Workspace<T>& ws, int jammed, int located) {
+  const bool rests = located >= 0 && ws.sys.contact_tolerance[located] > 0;
   // to round-off: torques of a slip that is left may be more than the friction without a load
-  return least_impulses(
-      ws, 0.0, [&](int c) { return c == jammed || (ws.contact.mode[c] == locked && !contact_one_way(ws, c)); });
+  return least_impulses(ws, 0.0, [&](int c) {
+    return c == jammed || (rests && c == located) || (ws.contact.mode[c] == locked && !contact_one_way(ws, c));
+  });
 }
 
 /// Transmissions keep their rates together while prescribed speeds jump; x: mass-weighted.

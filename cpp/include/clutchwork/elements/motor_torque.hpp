@@ -83,7 +83,8 @@ struct MotorTorque : declared::MotorTorque {
     Place x(p, at.piece);
     const bool clipped = who != turned && who < clips;
     if (clipped) x.clip = who;
-    if (clipped && is_at_rest(p, at) && drives_at_limit(p, at, x)) turn(p, at, x);
+    // at rest as in settle, but for one that passes it
+    if (who != turned && is_at_rest(p, at) && (!clipped || drives_at_limit(p, at, x))) turn(p, at, x);
     if (who == less || who == more) x.load += who == more ? 1 : -1;
     if (who == cooler || who == warmer) x.warmth += who == warmer ? 1 : -1;
     return settled(p, at, x);
@@ -182,7 +183,7 @@ struct MotorTorque : declared::MotorTorque {
   template <class T, class S>
   static bool is_at_rest(const Params<T>& p, const At<S>& at) {
     const NumberList speeds(p.speeds, at.points);
-    return abs(value(at.rate)) <= 1e-14 * value(speeds[speeds.count - 1]);
+    return abs(value(at.rate)) <= 1e-11 * value(speeds[speeds.count - 1]);
   }
   /// Whether it stays at rest.
   template <class T, class S>

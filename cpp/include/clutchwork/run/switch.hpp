@@ -196,7 +196,7 @@ Status settle_jams(Workspace<T>& ws, int located, bool at_start) {
   for (int round = 0; status == Status::unbalanced && round < ws.sys.loads; ++round) {
     const int c = ws.loads.jammed >= 0 ? ws.loads.jammed : ws.detail.component - int(ws.sys.elements);
     ws.loads.jammed = -1;
-    if (c < 0 || !stop_jammed(ws, c)) return status;
+    if (c < 0 || !stop_jammed(ws, c, round == 0 ? located : -1)) return status;
     ws.event_context.cause = Cause::jam, ws.event_context.contact = c;
     ws.contact.impulse[c] = at_start;
     status = settle(ws, -1);

@@ -199,7 +199,10 @@ struct TorqueLimit {
     phase.decide(Cause::torque_limit, c);
     if (rolls_over(ws, c)) return fail(ws, c);
     if (is_rigid(ws, c)) return;
-    const double pull = hit.s > 0 ? value(ws.event_context.torque[c]) : value(ws.step_end.multiplier[hit.index]);
+    // at the start of a run all torques may be round-off
+    const double start = value(ws.step_start.multiplier[hit.index]), noise = value(ws.step_start.noise[hit.index]);
+    const bool told = hit.s > 0 || abs(start) > noise;
+    const double pull = told ? value(ws.event_context.torque[c]) : value(ws.step_end.multiplier[hit.index]);
     const int way = free_way(ws, c);
     ws.contact.forced[c] = way != 0 ? way : pull > 0 ? backward : forward;
   }
