@@ -10,6 +10,7 @@ import pytest
 from scipy.integrate import solve_ivp
 
 import clutchwork as cw
+from support.amount import seeds
 from support.runs import TIGHT, at_end
 
 INERTIA, STIFFNESS, GAP, SPEED = 0.2, 500.0, 0.1, 3.0  # kg m2, N m/rad, rad, rad/s
@@ -81,6 +82,31 @@ def test_backlash_against_scipy(limited: bool, damping: float) -> None:
     # SciPy steps over kinks and jumps of the torque, which costs it some digits
     assert run["j.speed"] == pytest.approx(known.y[1], abs=1e-6 * np.abs(known.y[1]).max())
     assert run["x.twist"] == pytest.approx(known.y[0], abs=1e-6 * np.abs(known.y[0]).max())
+
+
+# of the random flights below, some with long steps over a flank and back to the other one
+OVER_BOTH = (72, 92, 93, 100, 111, 136, 203, 247)
+
+
+@pytest.mark.parametrize("seed", [*OVER_BOTH, *seeds(20)])
+def test_a_flank_is_met_however_long_the_step(seed: int) -> None:
+    """A constant torque turns a shaft round in the gap: a step may be longer than the flight to both flanks."""
+    rng = np.random.default_rng([seed, 5])
+    inertia, gap = 10 ** rng.uniform(-2, 0), 10 ** rng.uniform(-2, -0.5)
+    torque = 10 ** rng.uniform(0, 1.5) * rng.choice([-1, 1])
+    stiffness, _ = 10 ** rng.uniform(3.5, 5), rng.uniform(0.02, 0.3)
+    twist, flight = rng.uniform(-0.5, 0.5) * gap, sqrt(2 * gap * inertia / abs(torque))
+    speed = rng.uniform(-1, 1) * sqrt(2 * abs(torque) / inertia * gap) * 2
+    d = cw.Driveline("flight")
+    shaft = d.shaft("j", inertia=inertia, speed=speed)
+    d.add(cw.Torque("t", shaft=shaft, torque=torque))
+    flanks = {"stiffness": stiffness, "gap": gap, "initial_twist": twist}
+    d.add(cw.ElasticBacklash("x", base=d.housing, follower=shaft, **flanks))
+    for rtol in (1e-6, 1e-8, 1e-10):
+        run = d.simulate(6 * flight, rtol=rtol, atol=1e-2 * rtol)
+        beyond = np.sign(run["x.twist"]) * np.maximum(np.abs(run["x.twist"]) - gap / 2, 0.0)
+        # rows have both; a flank is found to 1e-12
+        assert np.abs(run["x.torque"] + stiffness * beyond).max() < 1e-9 * stiffness * gap, rtol
 
 
 def test_a_body_bounces_on_an_undamped_gap() -> None:

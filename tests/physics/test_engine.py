@@ -102,6 +102,27 @@ def test_a_closed_throttle_coasts_down_and_holds_the_engine_at_rest():
     assert run["e.torque"][-1] == pytest.approx(still - slope * run["s.speed"][-1], rel=1e-9)
 
 
+@pytest.mark.parametrize("method", ["rodas5p", "dopri5"])
+@pytest.mark.parametrize("end", [2.0, 3.0])
+@pytest.mark.parametrize("lag", [0.0, 0.05])
+def test_what_a_regularised_brake_has_brought_to_rest_fires_again(method, end, lag):
+    """Its speed dies away on either side of zero, where in reverse nothing burns: then the throttle opens, at once or
+    within a second."""
+    inertia, brake, torque = 0.2, 3.0, 5.0
+    d = cw.Driveline("again")
+    s = d.shaft("s", inertia=inertia, speed=5.0)
+    throttle = cw.Table([(0.0, 0.0), (2.0, 0.0), (end, 1.0), (4.0, 1.0)])
+    d.add(cw.Engine("e", shaft=s, full_load=[(0.0, torque), (100.0, torque)], throttle=throttle, lag=lag))
+    law = cw.Tanh(kinetic=0.1, speed=0.15)
+    d.add(cw.Brake("b", shaft=s, friction=law, gain=1.0, normal_force=brake / 0.1))
+    run = d.simulate(4.0, method=method)
+    exact = d.simulate(4.0, **FINE)
+    assert run["e.torque"][-1] == pytest.approx(torque, rel=1e-6)
+    # from rest on 2 N m of 5 are left, but for those of the throttle that the brake holds
+    assert run["s.speed"][-1] == pytest.approx(exact["s.speed"][-1], rel=1e-5)
+    assert run["s.speed"][-1] > (torque - brake) / inertia * (4.0 - end) - torque * lag / inertia
+
+
 def test_nothing_burns_below_the_stall_speed():
     run = _sound(
         _driveline(100.0, cw.Step(height=-1.0, start=0.05, offset=1.0), stall_speed=90.0).simulate(3.0, **FINE)

@@ -16,6 +16,7 @@ CHECKS: tuple[Check, ...] = (
     torques.sticking,
     torques.drives,
     torques.laws,
+    torques.flanks,
     motion.ratios,
     motion.passes,
     motion.motions,

@@ -159,6 +159,28 @@ def laws(seen: Seen) -> Iterator[Fault]:
         yield from seen.worst("law", seen.kind(branch), bad, words)
 
 
+def flanks(seen: Seen) -> Iterator[Fault]:
+    """Elastic flanks push where they are pressed, as their spring where they close, and not inside of their gap."""
+    torque, rate = seen.part("element_torque"), seen.speed @ seen.elements
+    for number, branch in enumerate(seen.wiring.elements):
+        part = branch.component
+        if not isinstance(part, cw.ElasticBacklash | cw.ElasticGap):
+            continue
+        state = seen.part("state")[:, branch.states[0][2]]
+        backlash = isinstance(part, cw.ElasticBacklash)
+        side = np.sign(state) if backlash else -np.ones(len(state))
+        depth = side * state - (0.5 * part.gap if backlash else 0.0)
+        push, spring = -side * torque[:, number], part.stiffness * np.maximum(depth, 0.0)
+        closes = side * rate[:, number] >= 0.0
+        missing = np.where(closes, spring - push, -push)
+        wrong = np.maximum(missing, np.where(depth < 0.0, np.abs(push), 0.0))
+        # the border of the gap is found to a share of it
+        near = part.stiffness * 1e-9 * max(1e-3, float(np.abs(state).max(initial=0.0)))
+        bad = wrong - 1e-7 * (spring + np.abs(push)) - near - 1e-9
+        words = lambda at, b=branch, p=push, d=depth: f"{b.name} pushes with {p[at]:.6g} N m {d[at]:.3g} rad deep"  # noqa: E731
+        yield from seen.worst("flank", seen.kind(branch), bad, words)
+
+
 def _nearest(own: Array, both: Array) -> Array:
     """Of the values around each instant the one that is nearest."""
     found: Array = both[np.arange(len(both)), np.argmin(np.abs(own[:, None] - both), axis=1)]

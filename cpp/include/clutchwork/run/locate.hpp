@@ -93,19 +93,23 @@ template <class F>
   return -1;
 }
 
-/// First sample below zero among five inner points and the vertex of a parabola at the lowest; then its root.
+/// A zero by the first sample below zero, among four inner points and the vertex of a parabola at the lowest of them;
+/// -1: none.
 template <class F>
-double first_crossing(F&& sampled, double start, double end, double limit) {
-  auto f = [&](double s) { return sample(sampled, s); };
+[[gnu::noinline]] double any_crossing(F&& f, double start, double end, double limit) {
   double x[8], y[8];
   int n = 0;
   x[n] = 0, y[n++] = larger(start, 0.0);
   for (int i = 1; i < 5; ++i) x[n] = 0.2 * i * limit, y[n] = f(x[n]), ++n;
-  x[n] = limit, y[n++] = limit == 1 ? end : f(limit);
+  x[n] = limit, y[n++] = end;
   int low = 0;
   for (int i = 1; i < n; ++i) {
     if (y[i] < 0) return locate(f, x[i - 1], y[i - 1], x[i], y[i]);
     if (y[i] < y[low]) low = i;
+  }
+  // one that is low at an end may dip elsewhere
+  for (int i = 1; (low == 0 || low == n - 1) && i < n - 1; ++i) {
+    if (y[i] < y[i - 1] && y[i] < y[i + 1]) low = i;
   }
   // vertex through the lowest sample and its neighbours; once more, closer, where it almost touches
   const int middle = low == 0 ? 1 : low == n - 1 ? n - 2 : low;
@@ -128,6 +132,21 @@ double first_crossing(F&& sampled, double start, double end, double limit) {
     left = f(larger(0.0, vertex - step)), right = f(smaller(limit, vertex + step));
   }
   return -1;
+}
+
+/// First zero of a guard that may dip between samples; a later one may have been seen first. One that starts below zero
+/// comes back at first.
+template <class F>
+double first_crossing(F&& sampled, double start, double end, double limit) {
+  constexpr int earlier = 3;
+  auto f = [&](double s) { return sample(sampled, s); };
+  double s = any_crossing(f, start, limit == 1 ? end : f(limit), limit);
+  for (int k = 0; k < earlier && start >= 0 && s > 0; ++k) {
+    const double before = any_crossing(f, start, 0.0, s);
+    if (!(before >= 0 && before < s)) break;
+    s = before;
+  }
+  return s;
 }
 
 }  // namespace clutchwork

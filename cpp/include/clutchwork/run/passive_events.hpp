@@ -72,7 +72,7 @@ bool knot_lets_go(Workspace<T>& ws) {
   for (int a = 0; a < ws.held.n; ++a) {
     if (is_rigid(ws, ws.held.contact[a])) return true;
   }
-  return ws.held.n_driven > 0 || is_beyond(ws);
+  return ws.held.n_driven > 0 || is_beyond(ws) || stays_below_jump(ws);
 }
 
 /// The law of a contact goes to its next piece; it may move its states. False: it does so without end.

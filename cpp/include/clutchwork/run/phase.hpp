@@ -194,15 +194,17 @@ class Phase : public StepSize<typename Form::Scalar> {
   }
   /// The run ends with the present state of the phase, which nobody exports.
   void end(Status status) { status_ = status; }
-  /// Nothing needs a decision, but for torques that have jumped beyond what locked contacts hold.
-  void go_on(bool jumped) {
+  /// Nothing needs a decision, but for torques that have jumped beyond what locked contacts hold, and elements at rest
+  /// that would start where one `passes` to its next piece.
+  void go_on(bool jumped, bool passes = false) {
     if (jumped) ws_.guard.jumped_at = ws_.time;
     if constexpr (!Form::small) {
       if (jumped && balance_massless(form_, step_)) export_state(form_, step_.y0());
     }
     if (jumped || !has_tangents<T>) linearize_start();
     // derivatives are still those at the event, where the modes are decided
-    if (jumped && is_beyond(taken_form().ws)) return decide(Cause::other_event);
+    auto& taken = taken_form().ws;
+    if ((jumped && is_beyond(taken)) || (passes && stays_below_jump(taken))) return decide(Cause::other_event);
     if constexpr (has_tangents<T>) {
       linearize_behind_event();
       if (jumped) note_borders(form_, step_, Borders::held);

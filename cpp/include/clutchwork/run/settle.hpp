@@ -50,6 +50,21 @@ bool jumps_between(Workspace<T>& ws, int d, int piece, int side) {
   return jumps(rate, 1e-9) || jumps(rate + T(side * slip_tolerance(ws)), 1e-6);
 }
 
+/// Whether an element stays at a kink, to what counts as zero, on the piece below it, where the one above has another
+/// torque: nothing but round-off says on which side it is. docs/theory/events.md, rule 17
+template <class T>
+bool stays_below_jump(Workspace<T>& ws) {
+  const double zero = slip_tolerance(ws);
+  for (int d = 0; d < ws.sys.elements; ++d) {
+    const int k = ws.branch_of[d];
+    if (!may_jump(ws, d) || k < 0 || k >= ws.n_branches || abs(value(ws.step_start.slope[k])) > zero) continue;
+    const int edges = edge_count(ws, d), above = ws.piece[d] % (edges + 1);
+    if (above == edges || abs(value(rate_of(ws, d)) - value(edge_at(ws, d, above))) > zero) continue;
+    if (jumps_between(ws, d, ws.piece[d], 1)) return true;
+  }
+  return false;
+}
+
 /// Locked contacts whose laws have pieces are on those that hold what they see now.
 template <class T>
 void settle_locked(Workspace<T>& ws) {

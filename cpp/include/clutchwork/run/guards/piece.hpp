@@ -134,7 +134,7 @@ struct PieceEnd : OwnScale {
     constexpr int few = 4;
     const bool back = phase.ws().events.crowd[component(phase.ws(), hit)] > few;
     const auto most = back ? larger(8 * hit.s, 1e-3) * phase.taken_step().h : infinity;
-    phase.go_on(true);
+    phase.go_on(true, true);
     phase.limit_step([&] { return smaller(most, collision_step(phase.taken_form(), hit.index)); });
   }
 };
