@@ -56,6 +56,10 @@ def rows_of(seed: int) -> str:
     return faults(model.model(seed), seed, 0)
 
 
+def rows_of_small(seed: int) -> str:
+    return faults(model.small(seed), seed, 0)
+
+
 def all_of(seed: int) -> str:
     return "" if seed in LEFT_OUT else faults(model.model(seed), seed, 2)
 
@@ -69,6 +73,12 @@ def test_rows_of_random_models() -> None:
 @pytest.mark.random
 def test_rows_of_more_random_models() -> None:
     sweep(rows_of, range(100, 100 + amount(400)))
+
+
+@pytest.mark.random
+def test_rows_of_small_models() -> None:
+    """The same of one to three elements over a longer time."""
+    sweep(rows_of_small, amount(200))
 
 
 @pytest.mark.random

@@ -1,6 +1,7 @@
 """Very many random models: what fails by kind, with the smallest seed of each, and that model made smaller.
 
-PYTHONPATH=tests python -m support.any_model.campaign --models 20000 --seed 0 --jobs 2 --shrink
+PYTHONPATH=tests python -m support.any_model.campaign --models 20000 --seed 0 --jobs 2 --shrink 30
+PYTHONPATH=tests python -m support.any_model.campaign --models 10000 --small --depth 1
 """
 
 from __future__ import annotations
@@ -30,7 +31,7 @@ class TooSlowError(Exception):
     """A model takes too long."""
 
 
-def examined(seed: int, depth: int) -> list[Found]:
+def examined(seed: int, depth: int, drawn: str = "model") -> list[Found]:
     """What is wrong with the model of a seed: (seed, kind, words)."""
 
     def late(*_: Any) -> None:
@@ -41,7 +42,7 @@ def examined(seed: int, depth: int) -> list[Found]:
     model.CRASHES.clear()
     judge.EXCUSED.clear()
     try:
-        made = model.model(seed)
+        made = getattr(model, drawn)(seed)
         found = [(fault.key, fault.words) for fault in judge.faults(made, seed, depth)]
     except (TooSlowError, KeyboardInterrupt, cw.Interrupted):
         found = [("hangs", f"more than {PATIENCE} s")]
@@ -54,25 +55,25 @@ def examined(seed: int, depth: int) -> list[Found]:
     return [(seed, key, words) for key, words in found]
 
 
-def _some(seeds: list[int], depth: int) -> list[Found]:
+def _some(seeds: list[int], depth: int, drawn: str) -> list[Found]:
     warnings.simplefilter("ignore")
-    return [one for seed in seeds for one in examined(seed, depth)]
+    return [one for seed in seeds for one in examined(seed, depth, drawn)]
 
 
-def campaign(first: int, count: int, jobs: int, depth: int) -> Iterator[list[Found]]:
+def campaign(first: int, count: int, jobs: int, depth: int, drawn: str) -> Iterator[list[Found]]:
     """Findings chunk by chunk."""
     chunks = [list(range(at, min(at + 20, first + count))) for at in range(first, first + count, 20)]
     if jobs == 1:
-        yield from (_some(chunk, depth) for chunk in chunks)
+        yield from (_some(chunk, depth, drawn) for chunk in chunks)
         return
     with ProcessPoolExecutor(jobs) as pool:
-        yield from pool.map(_some, chunks, [depth] * len(chunks))
+        yield from pool.map(_some, chunks, [depth] * len(chunks), [drawn] * len(chunks))
 
 
-def smaller(seed: int, key: str, depth: int, seconds: float) -> str:
+def smaller(seed: int, key: str, depth: int, drawn: str, seconds: float) -> str:
     """The model of a seed made smaller while it fails in the same way, as TOML."""
     fails = lambda made: any(fault.key == key for fault in judge.faults(made, seed, depth, key))  # noqa: E731
-    return shrink.toml(shrink.shrunk(model.model(seed), fails, seconds))
+    return shrink.toml(shrink.shrunk(getattr(model, drawn)(seed), fails, seconds))
 
 
 def main() -> None:
@@ -82,14 +83,16 @@ def main() -> None:
     parser.add_argument("--seed", type=int, default=0)
     parser.add_argument("--jobs", type=int, default=1)
     parser.add_argument("--depth", type=int, default=2, help="0: rows alone, 1: tolerances too, 2: twins too")
+    parser.add_argument("--small", action="store_true", help="models of one to three elements")
     parser.add_argument("--shrink", type=float, default=0.0, help="seconds for each kind")
     parser.add_argument("--only", default="", help="kinds that hold this word")
     parser.add_argument("--out", default="", help="a file for all findings, a line of JSON each")
     given = parser.parse_args()
     warnings.simplefilter("ignore")
+    drawn = "small" if given.small else "model"
     kinds: dict[str, list[tuple[int, str]]] = defaultdict(list)
     began, broken, excused = time.monotonic(), set[int](), set[int]()
-    for found in campaign(given.seed, given.models, given.jobs, given.depth):
+    for found in campaign(given.seed, given.models, given.jobs, given.depth, drawn):
         for seed, key, words in found:
             if key == EXCUSED:
                 excused.add(seed)
@@ -106,7 +109,11 @@ def main() -> None:
         seed, words = min(cases)
         print(f"{len({s for s, _ in cases}):6d}  {key}\n        seed {seed}: {words}")
         if given.shrink and given.only in key:
-            print("\n".join(f"        | {line}" for line in smaller(seed, key, given.depth, given.shrink).splitlines()))
+            print(
+                "\n".join(
+                    f"        | {line}" for line in smaller(seed, key, given.depth, drawn, given.shrink).splitlines()
+                )
+            )
 
 
 if __name__ == "__main__":

@@ -34,11 +34,7 @@ def model(seed: int) -> Plain:
     nodes = {"rotation": [n["name"] for n in made["shaft"]], "translation": [n["name"] for n in made["mass"]]}
     nodes["thermal"] = [n["name"] for kind in ("thermal", "ambient") for n in made[kind]]
     wanted = int(rng.integers(2, 10))
-    drive = str(rng.choice([*nodes["rotation"], *nodes["translation"]]))
-    spec = _torque_spec()
-    made["element"].append(
-        {"name": "drive", "type": "torque", "shaft": drive, "torque": values.signal(rng, spec, "torque", t_end)}
-    )
+    made["element"].append(_drive(rng, nodes, t_end))
     for number in range(wanted):
         _add(rng, made, f"e{number}", elements.kind(rng), nodes, t_end)
     if rng.random() < 0.3:
@@ -46,6 +42,42 @@ def model(seed: int) -> Plain:
     _light(rng, made)
     made["simulation"] = _settings(rng, t_end)
     return made
+
+
+def small(seed: int) -> Plain:
+    """One to three elements between few nodes, over a longer time: of many models what is wrong with one element."""
+    rng = np.random.default_rng([seed, 991])
+    t_end = log(rng, 0.1, 3.0)
+    made: Plain = {"name": f"small {seed}", "shaft": [], "mass": [], "thermal": [], "ambient": [], "element": []}
+    for number in range(int(rng.integers(1, 4))):
+        start = _moving(rng, 50.0) if rng.random() < 0.6 else {"speed": 0.0}
+        made["shaft"].append({"name": f"s{number}", "inertia": log(rng, 0.01, 1.0)} | start)
+    for number in range(int(rng.choice([0, 0, 1]))):
+        start = _moving(rng, 5.0) if rng.random() < 0.6 else {"speed": 0.0}
+        made["mass"].append({"name": f"m{number}", "mass": log(rng, 1.0, 100.0)} | start)
+    nodes = {"rotation": [n["name"] for n in made["shaft"]], "translation": [n["name"] for n in made["mass"]]}
+    nodes["thermal"] = []
+    if rng.random() < 0.8:
+        made["element"].append(_drive(rng, nodes, t_end))
+    for number in range(int(rng.integers(1, 4))):
+        _add(rng, made, f"e{number}", elements.kind(rng), nodes, t_end)
+    if rng.random() < 0.35:
+        _add(rng, made, "motion", str(rng.choice(list(REGISTRY[Role.MOTION]))), nodes, t_end)
+    if rng.random() < 0.3:
+        _light(rng, made)
+    made["simulation"] = _settings(rng, t_end)
+    return made
+
+
+def _drive(rng: Rng, nodes: dict[str, list[str]], t_end: float) -> Plain:
+    """A torque of any signal at one of the nodes."""
+    shaft = str(rng.choice([*nodes["rotation"], *nodes["translation"]]))
+    return {
+        "name": "drive",
+        "type": "torque",
+        "shaft": shaft,
+        "torque": values.signal(rng, _torque_spec(), "torque", t_end),
+    }
 
 
 def driveline(made: Plain) -> cw.Driveline:
