@@ -206,6 +206,7 @@ class Words:
             if known == key:
                 return found
         found = self._at(x)
+        found[1].setflags(write=False)
         self._last[:] = [(key, found)]
         return found
 

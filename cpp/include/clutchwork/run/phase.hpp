@@ -448,16 +448,13 @@ class Phase : public StepSize<typename Form::Scalar> {
   /// To where the step ends, with rows and integrals, and with derivatives where there are some. False: the run cannot
   /// go on.
   CLUTCHWORK_INLINE bool reach(const Hit& hit) {
-    ws_.out.jumps_at = hit.held < 0 ? -1 : has_tangents<T> ? 1 : hit.s;
-    ws_.out.jumps_from = hit.held;
-    if constexpr (has_tangents<T>)
-      return follow(hit.s);
-    else
-      return write(hit.s);
+    if constexpr (has_tangents<T>) return follow(hit.s, hit.held);
+    if (hit.held >= 0) ws_.out.jumps_at = hit.s, ws_.out.jumps_from = hit.held;
+    return write(hit.s);
   }
 
-  /// Derivatives along the step up to the share s, in as many parts as they need.
-  bool follow(double s)
+  /// Derivatives along the step up to the share s, in as many parts as they need; `held` as that of a hit.
+  bool follow(double s, double held)
     requires has_tangents<T>
   {
     if (s <= 0) varied_.rest();
@@ -466,7 +463,8 @@ class Phase : public StepSize<typename Form::Scalar> {
       if (to < 0) return leave(Status::step_collapse), false;
       if (ws_.moved.parts++ >= ws_.options.max_steps) return leave(Status::too_many_steps), false;
       const double end = to == s ? time_at(s) : step_.t + step_.h;
-      ws_.out.jumps_from = 1 - (s - ws_.out.jumps_from) / (to - at);
+      // a share of the last part
+      if (to == s && held >= 0) ws_.out.jumps_at = 1, ws_.out.jumps_from = 1 - (s - held) / (s - at);
       if constexpr (Form::full) keep_ties(form_, step_, end, step_.y1());
       if (!write_part(end)) return false;
       for (int i = 0; to < s && i < form_.n(); ++i) step_.y0()[i] = step_.y1()[i];
@@ -554,6 +552,7 @@ class Phase : public StepSize<typename Form::Scalar> {
     const double at = has_tangents<T> ? 1.0 : hit.s;
     if constexpr (has_tangents<T>) varied_.fit_part();
     note_before(form_, step_, at);
+    ws_.out.jumps_at = -1;
     interpolate(form_, step_, at, step_.u());
     ws_.time = smaller(ws_.time + hit.s * reach_, stop_);
     forget_forced(ws_);

@@ -54,6 +54,7 @@ bool jumps_between(Workspace<T>& ws, int d, int piece, int side) {
 /// torque: nothing but round-off says on which side it is. docs/theory/events.md, rule 17
 template <class T>
 bool stays_below_jump(Workspace<T>& ws) {
+  // what does not leave within a second stays
   const double zero = slip_tolerance(ws);
   for (int d = 0; d < ws.sys.elements; ++d) {
     const int k = ws.branch_of[d];

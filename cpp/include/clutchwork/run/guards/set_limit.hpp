@@ -29,25 +29,25 @@ std::uint64_t lines_chosen(const Workspace<T>& ws) {
   return code;
 }
 
-/// Where a set gives way, by its limit load f, that holds at both ends of the step by other lines of its bounds, -1:
-/// not before `limit`. By one choice of lines it holds in between as well, so that it can only give way where the
-/// choice is another one, however short that takes.
+/// Where a set gives way, by its limit load f, that holds at both ends of a part of the step by other lines of its
+/// bounds, -1: not before `limit`. By one choice of lines it holds in between as well, so that it only gives way where
+/// the choice is another one.
 template <class T, class F>
 [[gnu::noinline]] double first_between_lines(const Workspace<T>& ws, F&& f, double limit) {
-  constexpr int halvings = 30, changes = 4;
-  f(limit);
-  const auto last = lines_chosen(ws);
+  constexpr int halvings = 30, parts = 4;
   double low = 0, above = f(0.0);
-  for (int k = 0; k < changes; ++k) {
-    const auto own = lines_chosen(ws);
-    if (own == last) break;
-    double high = limit;
-    for (int i = 0; i < halvings; ++i) {
+  auto own = lines_chosen(ws);
+  for (int k = 1; k <= parts; ++k) {
+    double high = limit * k / parts;
+    const double end = high, room_there = f(end);
+    const auto there = lines_chosen(ws);
+    if (room_there < 0) return -1;
+    for (int i = 0; i < halvings && own != there; ++i) {
       const double middle = 0.5 * (low + high), room = f(middle);
       if (room < 0) return locate(f, low, above, middle, room);
       lines_chosen(ws) == own ? (low = middle, above = room) : high = middle;
     }
-    low = high, above = f(low);
+    low = end, above = room_there, own = there;
   }
   return -1;
 }
