@@ -41,7 +41,7 @@ template <class T, class F>
     double high = limit * k / parts;
     const double end = high, room_there = f(end);
     const auto there = lines_chosen(ws);
-    if (room_there < 0) return -1;
+    if (room_there < 0) return locate(f, low, above, end, room_there);
     for (int i = 0; i < halvings && own != there; ++i) {
       const double middle = 0.5 * (low + high), room = f(middle);
       if (room < 0) return locate(f, low, above, middle, room);
