@@ -48,6 +48,12 @@ void see_massless(Form& form, Step<Form>& step, double s, const Snapshot<T>& sho
   }
 }
 
+/// The share at which torques are seen that jump at s.
+template <class T>
+double before_jump(const Workspace<T>& ws, double s) {
+  return s == ws.out.jumps_at ? ws.out.jumps_from : s;
+}
+
 /// State and inputs at s, with the torques of all branches there.
 template <class Form, class T = typename Form::Scalar>
 void look_at(Form& form, Step<Form>& step, double s, const Snapshot<T>& shot) {
@@ -119,7 +125,7 @@ Snapshot<T> take_snapshot(Form& form, Step<Form>& step, double s, bool settles =
   const auto& sys = ws.sys;
   const int nv = int(sys.speeds), ne = int(sys.elements), nc = int(sys.contacts);
   Snapshot<T> shot{step.point(), step.slope(), ws.observed.rate, ws.out.v, ws.out.dv};
-  if (s == ws.out.jumps_at) s = ws.out.jumps_from;
+  s = before_jump(ws, s);
   look_at(form, step, s, shot);
   if constexpr (Form::full) s = before_lost_tie(form, step, s, shot), behind_lost_tie(form, step, shot);
   const double t = step.t + s * step.h;
