@@ -237,7 +237,7 @@ MENDED: dict[str, list[int]] = {
     "the first of two decisions at an instant at which the event buffer is full": [43002237],
     "a set that gives way where its limit jumps": [46005397, 45013883],
     "a gear that jams where a clutch locks within its tolerance": [49018683],
-    "a motor at rest whose torque passes a point of its losses": [52013004],
+    "a motor at rest whose torque passes a point of its losses, or that a sprag holds": [52013004, 52015629],
     "a contact without friction that is at rest for an instant": [52014398],
 }
 
