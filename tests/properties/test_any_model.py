@@ -351,6 +351,20 @@ def test_a_wrong_row_is_seen(part: str, place: int, kind: str) -> None:
     assert kind in found, found
 
 
+@pytest.mark.parametrize("part", ["element_torque", "state"])
+def test_a_wrong_flank_is_seen(part: str) -> None:
+    """A flank whose torque or twist is changed while it is pressed."""
+    d = cw.Driveline("play")
+    mass = d.shaft("mass", inertia=1.0)
+    d.add(cw.Torque("drive", shaft=mass, torque=5.0))
+    d.add(cw.ElasticBacklash("play", base=d.housing, follower=mass, gap=0.2, stiffness=500.0, damping=1.0))
+    run = simulate(d, 1.0)
+    assert not rows.faults(run)
+    changed, column = run.rows.copy(), run.wiring.columns[part].start
+    changed[:, column + (part == "element_torque")] *= 0.7
+    assert "flank" in {fault.kind for fault in rows.faults(replace(run, rows=changed))}
+
+
 def test_a_wrong_state_is_seen() -> None:
     """Locked where it slips, and slipping the other way."""
     run = _run()

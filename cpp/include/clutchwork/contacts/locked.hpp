@@ -280,26 +280,29 @@ template <class T>
 }
 
 /// Contacts that hold more come first, each the way in which it holds most: what slips and follows a load moves with
-/// the torques of the independent contacts, the first of a set. docs/theory/load-dependent.md, rule 3
+/// the torques of the independent contacts, the first of a set. `again`: as they were sorted last, whatever they hold
+/// by now. docs/theory/load-dependent.md, rule 3
 template <class T>
-[[gnu::noinline]] void sort_by_strength(const Workspace<T>& ws, int* contact, int n) {
-  auto strength = [&](int c) {
+[[gnu::noinline]] void sort_by_strength(const Workspace<T>& ws, int* contact, int n, bool again) {
+  double* strength = ws.held.strength;
+  for (int a = 0; a < n && !again; ++a) {
     T lower, upper;
-    bounds_of_held(ws, c, lower, upper);
-    return larger(value(-lower), value(upper));
-  };
+    bounds_of_held(ws, contact[a], lower, upper);
+    strength[contact[a]] = larger(value(-lower), value(upper));
+  }
   for (int a = 1; a < n; ++a) {
     const int c = contact[a];
     int b = a;
-    for (; b > 0 && strength(contact[b - 1]) < strength(c); --b) contact[b] = contact[b - 1];
+    for (; b > 0 && strength[contact[b - 1]] < strength[c]; --b) contact[b] = contact[b - 1];
     contact[b] = c;
   }
 }
 
 /// Sort the locked contacts into independent and redundant ones; all of them are independent where no directions depend
 /// on others. The torques of the independent ones make the loads: those that follow loads are the last of them.
+/// `again`: as at the start of the phase.
 template <class T>
-void list_locked(Workspace<T>& ws) {
+void list_locked(Workspace<T>& ws, bool again = false) {
   Held<T>& h = ws.held;
   int n = 0;
   const bool apart = ws.sys.loads > 0 && ws.geometry.redundant;
@@ -309,7 +312,7 @@ void list_locked(Workspace<T>& ws) {
       h.in_set[n] = 0, h.all[n++] = c;
     }
     if constexpr (!has_lanes<T>) {
-      if (apart && follow == 0) sort_by_strength(ws, h.all, n);
+      if (apart && follow == 0) sort_by_strength(ws, h.all, n, again);
     }
   }
   for (int a = 0; a < n; ++a) h.contact[a] = h.all[a];

@@ -125,7 +125,7 @@ bool count_reduced(Workspace<T>& ws) {
 template <class T>
 void list_locked_now(Workspace<T>& ws, bool again) {
   const BesideRatios<T> beside(ws, again ? Written::last : Written::now);
-  list_locked(ws);
+  list_locked(ws, again);
   for (int a = 0; a < ws.ratios.n; ++a) ws.ratios.turned[a] = ws.ratios.present[a] = ws.ratios.value[a];
 }
 

@@ -66,6 +66,7 @@ struct Held {
   bool too_many = false;  ///< more than there is room for: the system is not what it says
   int rank = 0;           ///< of the directions of the locked contacts where they were sorted
   bool vanished = false;  ///< nothing is left of an independent contact where the sets were looked at last
+  double* strength = nullptr;  ///< what each locked contact held where they were sorted, where some follow loads
 
   // scratch
   T *rhs = nullptr,
@@ -86,6 +87,7 @@ struct Held {
     a.take(p.reach_prescribed, n.few ? nc * n.prescribed : 0);
     a.take(p.redundant, most), a.take(p.set_first, most + 1), a.take(p.set_rank, most), a.take(p.set_member, nc);
     a.take(p.set_place, nc), a.take(p.in_set, nc), a.take(p.driven, most), a.scratch(p.tie, most * nc);
+    a.take(p.strength, n.loads > 0 ? nc : 0);
     a.scratch(p.rhs, nc), a.scratch(p.solved, nc), a.scratch(p.carried, nc), a.scratch(p.motion, n.speeds);
     a.scratch(p.turned, nc), a.scratch(p.rows, nc * nv), a.scratch(p.basis, nv * nv);
     a.scratch(p.norms, nc), a.scratch(p.share, nc);

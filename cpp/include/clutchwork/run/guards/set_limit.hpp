@@ -31,9 +31,9 @@ std::uint64_t lines_chosen(const Workspace<T>& ws) {
 
 /// Where a set gives way, by its limit load f, that holds at both ends of a part of the step by other lines of its
 /// bounds, -1: not before `limit`. By one choice of lines it holds in between as well, so that it only gives way where
-/// the choice is another one.
+/// the choice is another one. `middle_room`: f(0.5), where it was asked.
 template <class T, class F>
-[[gnu::noinline]] double first_between_lines(const Workspace<T>& ws, F&& f, double limit) {
+[[gnu::noinline]] double first_between_lines(const Workspace<T>& ws, F&& f, double limit, double& middle_room) {
   constexpr int halvings = 30, parts = 4;
   double low = 0, above = f(0.0);
   auto own = lines_chosen(ws);
@@ -41,6 +41,7 @@ template <class T, class F>
     double high = limit * k / parts;
     const double end = high, room_there = f(end);
     const auto there = lines_chosen(ws);
+    if (end == 0.5) middle_room = room_there;
     if (room_there < 0) return locate(f, low, above, end, room_there);
     for (int i = 0; i < halvings && own != there; ++i) {
       const double middle = 0.5 * (low + high), room = f(middle);
@@ -65,8 +66,9 @@ template <class Form>
   };
   const double before = value(ws.step_start.room[k]);
   hit.take(first_at_no_load(form, step, f, before, hit.s), k);
-  hit.take(first_between_lines(ws, f, hit.s), k);
-  if (!ends_say_little(ws, hit) && least >= ample - 1 && f(0.5) >= ample - 1) return;
+  double middle = -1;
+  hit.take(first_between_lines(ws, f, hit.s, middle), k);
+  if (!ends_say_little(ws, hit) && least >= ample - 1 && middle >= ample - 1) return;
   hit.take(first_dip(f, before, value(ws.step_end.room[k]), hit.s), k);
 }
 
