@@ -230,6 +230,20 @@ def test_held_at_rest_it_drives_beyond_a_point_of_its_losses(way, point):
     assert run["m.torque"] == pytest.approx(way * np.minimum(40.0 * run.time, 20.0), rel=1e-11)
 
 
+@pytest.mark.parametrize("start", [10.0, 7.3, 1.9])
+@pytest.mark.parametrize("way", [1.0, -1.0])
+def test_it_passes_rest_where_its_torque_falls_past_a_point_of_its_losses(way, start):
+    """It drives with 3 N m and brakes with 2 N m; its losses have a point at 2.5 N m."""
+    d, load, inertia = cw.Driveline("passes"), 8.0, 0.5
+    s = d.shaft("s", inertia=inertia, speed=way * start)
+    d.add(cw.Torque("t", shaft=s, torque=-way * load))
+    losses = {"speeds": (0.0, 300.0), "torques": (0.0, 2.5, 4.0), "losses": ((0.0, 10.0, 40.0), (0.0, 10.0, 40.0))}
+    d.add(cw.ElectricMotor("m", shaft=s, command=way * 10.0, max_torque=3.0, generator_torque=2.0, **losses))
+    rest = start * inertia / (load - 3.0)
+    run = d.simulate(rest + 1.0, times=[rest + 1.0])
+    assert run["s.speed"][-1] == pytest.approx(-way * (load - 2.0) / inertia, rel=1e-9)
+
+
 @pytest.mark.parametrize("method", ["rodas5p", "dopri5"])
 @pytest.mark.parametrize("way", [1.0, -1.0])
 def test_driven_from_rest_against_its_command_it_brakes_at_once(way, method):

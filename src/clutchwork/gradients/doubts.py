@@ -35,6 +35,8 @@ Mask = NDArray[np.bool_]
 
 # arrays without which no number changes how a run starts, and which loads press
 STARTS = ("segment_coef", "contact_rate_value", "initial_speed", "initial_state")
+# what slips for less than a nanosecond counts as at rest: a slip that starts so many steps beside zero lasts
+LET_GO = 1e2
 # a state that starts so many steps beside zero passes it where an event is seen
 BEHIND_THE_START = 1e3
 
@@ -169,9 +171,9 @@ class Doubts:
         names = [one.name for one in self.runs.task.parameters]
         begin, end = self.runs.wanted.begin, self.runs.wanted.t_end
         for time, why, numbers in unpressed(chart, words, self.point.slopes, names, begin, end):
-            yield Doubt(why, self._up_to(time), numbers, one_way=True)
+            yield Doubt(why, self._up_to(time), numbers, one_way=True, width=LET_GO)
         every = np.ones(len(self.lines), dtype=bool)
         for why, numbers in at_rest(chart, words, self.point.slopes):
-            yield Doubt(why, every, numbers)
+            yield Doubt(why, every, numbers, width=LET_GO)
         for why, numbers in at_zero(chart, self.point.slopes):
             yield Doubt(why, every, numbers, width=BEHIND_THE_START)

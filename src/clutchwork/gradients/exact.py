@@ -36,6 +36,8 @@ FAR = 1e300
 AT_ONCE = 8
 # factor of the tighter tolerance at which rough derivatives are taken again, and the least one
 TIGHTER, LEAST = 1e-2, 1e-12
+# what the tightest two runs may differ by on a rough derivative, of the value over the number
+APART = 1e-4
 # a derivative may miss so much of the relative tolerance of a run
 BY_TOLERANCE = 100.0
 # a run is followed back from so many numbers on, and from so many more for each result
@@ -246,12 +248,20 @@ class Exact:
             nearer = self._tighter.lines(self._tighter.runs.point(point.x))[1]
         except NoGradient:
             return run, found
-        # near round-off a tighter run knows no more
-        whole = [
-            there._replace(value=here.value) if here.rough and (here.several or there.missed < here.missed) else here
-            for here, there in zip(found, nearer, strict=True)
-        ]
-        return run, whole
+        return run, [self._nearer(here, there, point.sizes) for here, there in zip(found, nearer, strict=True)]
+
+    def _nearer(self, here: Line, there: Line, sizes: Array) -> Line:
+        """The better one of a line and that of a tighter run; near round-off a tighter run knows no more."""
+        if not here.rough:
+            return here
+        if there.is_open:
+            return there._replace(value=here.value)
+        is_better = bool(here.several) or there.missed < here.missed
+        best = there._replace(value=here.value) if is_better else here
+        if here.several or not there.rough or self._tighter is None or self._tighter._tighter is not None:  # noqa: SLF001, its own kind
+            return best
+        size = max(abs(here.value), here.size)
+        return best.opened(np.abs(here.left - there.left) * sizes > APART * size)
 
     def _repeats(self, one: Line) -> bool:
         """Whether a tighter run is asked for its derivatives; equal extremes are looked at once more alone."""

@@ -21,6 +21,10 @@ Places = NDArray[np.intp]
 ALIKE = 1e-6
 # what is not known of a derivative may be so much of the value, for a number that changes by all of itself
 UNKNOWN = 1e-6
+NOT_AGREED = (
+    "follows an instant that moves, at which rates cancel, and runs of two tolerances do not agree on its derivatives; "
+    "ask for another value, or give what settles there more inertia"
+)
 # share of a squared jerk in steps that runs with derivatives do not look into, from which on it has none
 UNSEEN = 1e-5
 UNSEEN_MOTION = "which has no derivatives; give what is so stiff more inertia, or start it where it has settled"
@@ -47,6 +51,18 @@ class Line(NamedTuple):
     several: str = ""  # why both sides differ
     rough: bool = False  # whether a run of a tighter tolerance knows its derivatives better
     missed: float = 0.0  # the most that is not known of one of them, of the value
+
+    @property
+    def is_open(self) -> bool:
+        """Whether runs of two tolerances do not agree on it, of a value that is rough at both."""
+        return self.several.endswith(NOT_AGREED)
+
+    def opened(self, numbers: NDArray[np.bool_]) -> Line:
+        """The same where they do not agree on the derivatives by some numbers."""
+        if not numbers.any():
+            return self
+        left, right = (np.where(numbers, np.nan, side) for side in (self.left, self.right))
+        return self._replace(left=left, right=right, several=f"{self.name} {NOT_AGREED}")
 
     def refused(self, why: str) -> Line:
         """The same where it has none by the numbers that move it."""

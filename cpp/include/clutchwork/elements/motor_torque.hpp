@@ -83,11 +83,14 @@ struct MotorTorque : declared::MotorTorque {
     Place x(p, at.piece);
     const bool clipped = who != turned && who < clips;
     if (clipped) x.clip = who;
-    // at rest as in settle, but for one that passes it
-    if (who != turned && is_at_rest(p, at) && (!clipped || drives_at_limit(p, at, x))) turn(p, at, x);
-    if (who == less || who == more) x.load += who == more ? 1 : -1;
-    if (who == cooler || who == warmer) x.warmth += who == warmer ? 1 : -1;
-    return settled(p, at, x);
+    // at rest as in settle, but for one that passes it, whose torque jumps over the border
+    if (who != turned && is_at_rest(p, at) && (!clipped || drives_at_limit(p, at, x))) {
+      Place held = x;
+      turn(p, at, held);
+      const int there = settled_behind(p, at, held, who);
+      if (who == less ? held.load < x.load : who != more || held.load > x.load) return there;
+    }
+    return settled_behind(p, at, x, who);
   }
   template <class T>
   static bool turns(const Params<T>&, int) {
@@ -177,6 +180,14 @@ struct MotorTorque : declared::MotorTorque {
     const auto slack = border_slack * value(p.scale);
     x.load = settled_interval(f, loads_of(p) - 1, x.load, slack, [&](int i) { return grid.border(loads, i); });
     return x.number(p);
+  }
+
+  /// The same behind a border of the map or of the derating.
+  template <class T>
+  static int settled_behind(const Params<T>& p, const At<T>& at, Place& x, int who) {
+    if (who == less || who == more) x.load += who == more ? 1 : -1;
+    if (who == cooler || who == warmer) x.warmth += who == warmer ? 1 : -1;
+    return settled(p, at, x);
   }
 
   /// Whether it stands, but for round-off.
