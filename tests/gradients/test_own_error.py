@@ -115,3 +115,25 @@ def test_a_swinging_speed_that_passes_zero_does_not_loosen_what_derivatives_may_
     )
     # the motion has an error too: its bristles ring
     assert found == pytest.approx(wanted, rel=1e-4)
+
+
+@pytest.mark.parametrize("load", [50.0, 300.0])
+@pytest.mark.parametrize("rtol", [1e-6, 1e-8])
+def test_a_jerk_that_settles_behind_a_knot_that_moves_is_known_or_refused(load: float, rtol: float) -> None:
+    """Its derivative is the small difference of what the instant moves: a note says so, or there is none."""
+    d = cw.Driveline("settles")
+    s = d.shaft("s", inertia=0.05)
+    d.add(cw.Torque("t", shaft=s, torque=cw.Table([(0.08, 0.0), (0.15, 0.0), (0.2, -0.5), (0.26, -3.6)])))
+    law = cw.RegularisedStribeck(static=0.05, kinetic=0.037, speed=0.8, width=0.03)
+    d.add(cw.Brake("b", shaft=s, friction=law, gain=1.0, normal_force=load))
+    f = cw.differentiable(d, 0.3, of=cw.squared_jerk("s"), by="t.torque.times[3]", rtol=rtol, atol=1e-2 * rtol)
+    sharp = cw.differentiable(d, 0.3, of=cw.squared_jerk("s"), by="t.torque.times[3]", rtol=1e-11, atol=1e-13)
+    step = 1e-6
+    wanted = (sharp(f.x0 + step)[0] - sharp(f.x0 - step)[0]) / (2 * step)
+    if load > 100.0:
+        with pytest.raises(cw.NoGradient, match="runs of two tolerances do not agree"):
+            f.gradient()
+        return
+    found = f.gradient()
+    assert any("fewer digits" in text for text in found.notes)
+    assert found.matrix[0, 0] == pytest.approx(wanted, rel=1e-6)

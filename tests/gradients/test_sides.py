@@ -104,3 +104,35 @@ def test_hardly_anything_is_refused_without_cause():
     # a value is refused by all of four numbers at once, which is more than a hundredth of a few models
     assert len(found.without_cause) <= max(0.01 * found.pairs, 4), found.without_cause
     assert not found.wrong, found.wrong
+
+
+def test_a_slip_that_begins_at_zero_turns_within_nanoseconds():
+    """A light shaft that its drive tears off at once; started backward it slips so for a moment, on the left."""
+    d, drive, grip, inertia = cw.Driveline("torn off"), 50.0, 20.0, 0.02
+    a, b = d.shaft("a", inertia=inertia, speed=0.0), d.shaft("b", inertia=1.0, speed=0.0)
+    d.add(cw.Torque("drive", shaft=a, torque=drive))
+    law = cw.Coulomb(static=1.0, kinetic=1.0)
+    d.add(cw.Clutch("c", base=a, follower=b, friction=law, gain=1.0, normal_force=grip))
+    d.add(cw.SpringDamper("k", base=d.housing, follower=b, stiffness=300.0, damping=2.0))
+    found = {
+        side: cw.differentiable(d, 0.01, of=cw.maximum("b.acceleration"), by="a.speed", side=side).gradient()
+        for side in ("left", "right")
+    }
+    # it is the largest where the slip turns, behind h / (grip (1 / inertia + 1) + drive / inertia), at -grip so long
+    rate = grip * (1.0 / inertia + 1.0) + drive / inertia
+    assert found["right"].matrix[0, 0] == pytest.approx(0.0, abs=1e-6)
+    assert found["left"].matrix[0, 0] == pytest.approx(-2.0 * grip / rate, rel=1e-5)
+
+
+def test_a_pressure_that_begins_at_zero_may_begin_later():
+    """The jerk of a brake from there on lasts for less time; a pressure below zero for a nanosecond is not seen."""
+    height, frequency, factor, inertia = 4351.0, 1.9, 9e-4, 0.1
+    d = cw.Driveline("begins")
+    s = d.shaft("s", inertia=inertia, speed=0.0)
+    d.add(cw.Torque("t", shaft=s, torque=6.0))
+    law, wave = cw.Coulomb(static=0.09, kinetic=0.09), cw.Sine(amplitude=height, frequency=frequency)
+    d.add(cw.Brake("b", shaft=s, friction=law, gain=factor / 0.09, pressure=wave))
+    rise = 2 * np.pi * frequency * height
+    for side, wanted in (("left", (factor * rise / inertia) ** 2 / rise), ("right", 0.0)):
+        f = cw.differentiable(d, 0.05, of=cw.squared_jerk("s"), by="b.pressure.offset", side=side)
+        assert f.gradient().matrix[0, 0] == pytest.approx(wanted, rel=1e-6, abs=1e-6)

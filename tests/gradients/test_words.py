@@ -14,6 +14,7 @@ from clutchwork.assembly.masses import masses
 from clutchwork.base.errors import ModelError
 from clutchwork.declare.schema import Role
 from clutchwork.gradients.assembled import Assembled, made, words_of
+from clutchwork.gradients.finite_differences import Bent, slope
 from clutchwork.gradients.parameters import changes, parameters
 from clutchwork.gradients.words import Words
 from clutchwork.model.changes import changed_model
@@ -351,3 +352,16 @@ def test_a_start_before_zero(signal: cw.Signal) -> None:
     d = cw.Driveline("started")
     d.add(cw.Torque("t", shaft=d.shaft("a", inertia=1.0), torque=signal))
     same_as_assembled(d, ["t.torque.start"], [-0.7])
+
+
+def test_a_number_that_hardly_moves_a_weight_that_is_solved_for_has_no_kink():
+    """A weight of a signal has hundreds of units of round-off, more than the number moves it: a lead of a screw."""
+    here, chance, lead = np.array([1.1e-4]), np.random.default_rng(1), 4.4e-3
+
+    def along(step):
+        return here * (1.0 + 3e-8 * step / lead + 5e-14 * chance.uniform(-1.0, 1.0))
+
+    found = slope(along, here, lead, lead, np.inf, 4e-16 * here).value
+    assert found * lead / here == pytest.approx([3e-8], abs=1e-10)
+    with pytest.raises(Bent):
+        slope(lambda step: here + 1e-9 * np.abs([step]), here, lead, lead, np.inf, 4e-16 * here)

@@ -283,7 +283,9 @@ def _judge_loose(tally: Tally, place: int, pair: Pair, known: Differences, deriv
 
 
 def concerned(notes: tuple[str, ...], function: Any, name: str) -> bool:
-    """Whether a note is about an instant up to that of an output, which nothing behind it moves."""
+    """Whether a note names an output, or is about an instant up to that of it, which nothing behind it moves."""
+    if any(text.startswith(f"{name}: ") for text in notes):
+        return True
     one = dict(zip(function.of, function.task.outputs.values(), strict=True)).get(name)
     if hasattr(one, "times"):
         end = max(map(float, one.times))

@@ -22,14 +22,16 @@ Mask = NDArray[np.bool_]
 PIECE = 12
 # a value that is zero, of what it is made of
 ROUND_OFF = 1e-15
+# so long it must be below zero to be seen [s]
+SEEN = 1e-7
 
 
 def unpressed(
     chart: Chart, words: Array, slopes: Slopes, names: Sequence[str], begin: float, end: float
-) -> Iterator[tuple[float, str, Mask]]:
+) -> Iterator[tuple[float, str, Mask, Array]]:
     """Intervals in which they are zero: their start [s], a message, and the numbers that would raise them there.
 
-    Parameters: begin and end, of the run [s].
+    Then how far these must be moved for that to be seen. Parameters: begin and end, of the run [s].
     """
     system, (time, _), (first, size) = chart.assembled.system, *map(chart.words_in, ("segment_time", "segment_coef"))
     for number in pressing(system) if slopes.touch(first, size) else ():
@@ -45,7 +47,12 @@ def unpressed(
                 since, until = max(since, begin), min(until, end)
                 free = ", ".join(names[column] for column in np.flatnonzero(moved).tolist())
                 what = f"{system.inputs[number].name} is 0 from {since:g} to {until:g} s"
-                yield since, f"{what}, where a little more of {free} acts and a little less does not", moved
+                yield (
+                    since,
+                    f"{what}, where a little more of {free} acts and a little less does not",
+                    moved,
+                    np.zeros(len(names)),
+                )
         yield from _at_knots(system, number, pieces, bounds, slopes, first + PIECE * start, (begin, end))
 
 
@@ -65,7 +72,7 @@ def _first_time(bounds: Array, piece: int, period: float, begin: float) -> tuple
 
 def _at_knots(
     system: System, number: int, pieces: Array, bounds: Array, slopes: Slopes, first: int, run: tuple[float, float]
-) -> Iterator[tuple[float, str, Mask]]:
+) -> Iterator[tuple[float, str, Mask, Array]]:
     """Knots at which a load that is zero there and not beside it begins or ends.
 
     Parameters: first, the word of the first piece; run, its begin and end [s].
@@ -76,11 +83,13 @@ def _at_knots(
     waves = pieces[:, [4, 8]] * np.sin(pieces[:, [6, 10]])
     nothing = ROUND_OFF * np.abs(pieces[:, [0, 4, 8]]).sum(axis=1)
     for piece in np.flatnonzero((np.abs(pieces[:, 0] + waves.sum(axis=1)) <= nothing) & acts & goes_on).tolist():
-        moved = _begins(pieces[piece], slopes, first + PIECE * piece) != 0.0
+        by_numbers = np.abs(_begins(pieces[piece], slopes, first + PIECE * piece))
+        moved = by_numbers > 0.0
         time = float(bounds[piece])
         if moved.any() and run[0] <= time < run[1]:
             what = f"{system.inputs[number].name} is 0 at its knot at {time:g} s, where it begins or ends"
-            yield time, f"{what}; give that point a value", moved
+            far = np.where(moved, SEEN * _rate(pieces[piece]) / np.where(moved, by_numbers, 1.0), 0.0)
+            yield time, f"{what}; give that point a value", moved, far
 
 
 def _begins(piece: Array, slopes: Slopes, first: int) -> Array:
@@ -90,6 +99,12 @@ def _begins(piece: Array, slopes: Slopes, first: int) -> Array:
         by_size, by_phase = slopes.of(np.array([first + wave, first + wave + 2]))
         found = found + np.sin(piece[wave + 2]) * by_size + piece[wave] * np.cos(piece[wave + 2]) * by_phase
     return found
+
+
+def _rate(piece: Array) -> float:
+    """How fast a piece that begins at zero rises [1/s]."""
+    waves = (piece[w] * (piece[w + 1] * np.cos(piece[w + 2]) - piece[w + 3] * np.sin(piece[w + 2])) for w in (4, 8))
+    return abs(float(piece[1] + sum(waves)))
 
 
 @memoize

@@ -31,14 +31,13 @@ from clutchwork.gradients.lines import Line
 from clutchwork.gradients.primal import SAME
 from clutchwork.gradients.runs import Run, RunPoint, Runs
 
+Array = NDArray[np.float64]
 Mask = NDArray[np.bool_]
 
 # arrays without which no number changes how a run starts, and which loads press
 STARTS = ("segment_coef", "contact_rate_value", "initial_speed", "initial_state")
-# what slips for less than a nanosecond counts as at rest: a slip that starts so many steps beside zero lasts
-LET_GO = 1e2
-# a state that starts so many steps beside zero passes it where an event is seen
-BEHIND_THE_START = 1e3
+# what lasts less than some nanoseconds is not seen: a slip that starts so many steps beside zero, and a state
+LET_GO, BEHIND_THE_START = 1e2, 1e3
 
 
 class Doubt(NamedTuple):
@@ -49,8 +48,9 @@ class Doubt(NamedTuple):
     numbers: Mask
     # what a number does on one side is the same wherever the others are on that side
     one_way: bool = False
-    # how much farther beside the point it is looked at: an event that is too close to the start is not seen
+    # how much farther beside the point it is looked at, and at least how far: events close to the start are not seen
     width: float = 1.0
+    least: float | Array = 0.0
 
 
 @dataclass(frozen=True, eq=False)
@@ -170,8 +170,8 @@ class Doubts:
             return
         names = [one.name for one in self.runs.task.parameters]
         begin, end = self.runs.wanted.begin, self.runs.wanted.t_end
-        for time, why, numbers in unpressed(chart, words, self.point.slopes, names, begin, end):
-            yield Doubt(why, self._up_to(time), numbers, one_way=True, width=LET_GO)
+        for time, why, numbers, far in unpressed(chart, words, self.point.slopes, names, begin, end):
+            yield Doubt(why, self._up_to(time), numbers, one_way=True, least=far)
         every = np.ones(len(self.lines), dtype=bool)
         for why, numbers in at_rest(chart, words, self.point.slopes):
             yield Doubt(why, every, numbers, width=LET_GO)

@@ -37,7 +37,7 @@ AT_ONCE = 8
 # factor of the tighter tolerance at which rough derivatives are taken again, and the least one
 TIGHTER, LEAST = 1e-2, 1e-12
 # what the tightest two runs may differ by on a rough derivative, of the value over the number
-APART = 1e-4
+APART = 1e-3
 # a derivative may miss so much of the relative tolerance of a run
 BY_TOLERANCE = 100.0
 # a run is followed back from so many numbers on, and from so many more for each result

@@ -62,7 +62,8 @@ class Settling:
         for doubt in (doubts[-place] for _, _, place in sorted(order)):
             why[np.ix_(doubt.lines, doubt.numbers)] = doubt.why
             one_way &= doubt.one_way | ~doubt.numbers
-            steps = np.maximum(steps, np.where(doubt.numbers, doubt.width * STEP * sizes, 0.0))
+            far = np.maximum(doubt.width * STEP * sizes, doubt.least)
+            steps = np.maximum(steps, np.where(doubt.numbers, far, 0.0))
         why[[bool(line.none) for line in lines]] = ""
         return cls(task, x, sizes, lines, {side: _taken(lines, side, why.shape) for side in SIDES}, why, one_way, steps)
 
