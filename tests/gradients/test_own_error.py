@@ -118,7 +118,7 @@ def test_a_swinging_speed_that_passes_zero_does_not_loosen_what_derivatives_may_
 
 
 @pytest.mark.parametrize("load", [50.0, 300.0])
-@pytest.mark.parametrize("rtol", [1e-6, 1e-8])
+@pytest.mark.parametrize("rtol", [1e-6, 1.1e-6, 3e-6, 1e-8])
 def test_a_jerk_that_settles_behind_a_knot_that_moves_is_known_or_refused(load: float, rtol: float) -> None:
     """Its derivative is the small difference of what the instant moves: a note says so, or there is none."""
     d = cw.Driveline("settles")

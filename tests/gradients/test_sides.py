@@ -106,16 +106,17 @@ def test_hardly_anything_is_refused_without_cause():
     assert not found.wrong, found.wrong
 
 
-def test_a_slip_that_begins_at_zero_turns_within_nanoseconds():
+@pytest.mark.parametrize("much", [1.0, 4.0, 50.0])
+def test_a_slip_that_begins_at_zero_turns_within_nanoseconds(much):
     """A light shaft that its drive tears off at once; started backward it slips so for a moment, on the left."""
-    d, drive, grip, inertia = cw.Driveline("torn off"), 50.0, 20.0, 0.02
+    d, drive, grip, inertia = cw.Driveline("torn off"), 50.0 * much, 20.0 * much, 0.02
     a, b = d.shaft("a", inertia=inertia, speed=0.0), d.shaft("b", inertia=1.0, speed=0.0)
     d.add(cw.Torque("drive", shaft=a, torque=drive))
     law = cw.Coulomb(static=1.0, kinetic=1.0)
     d.add(cw.Clutch("c", base=a, follower=b, friction=law, gain=1.0, normal_force=grip))
     d.add(cw.SpringDamper("k", base=d.housing, follower=b, stiffness=300.0, damping=2.0))
     found = {
-        side: cw.differentiable(d, 0.01, of=cw.maximum("b.acceleration"), by="a.speed", side=side).gradient()
+        side: cw.differentiable(d, 0.01, of=cw.maximum("b.acceleration"), by="a.speed", side=side, rtol=1e-9).gradient()
         for side in ("left", "right")
     }
     # it is the largest where the slip turns, behind h / (grip (1 / inertia + 1) + drive / inertia), at -grip so long
@@ -124,15 +125,49 @@ def test_a_slip_that_begins_at_zero_turns_within_nanoseconds():
     assert found["left"].matrix[0, 0] == pytest.approx(-2.0 * grip / rate, rel=1e-5)
 
 
-def test_a_pressure_that_begins_at_zero_may_begin_later():
-    """The jerk of a brake from there on lasts for less time; a pressure below zero for a nanosecond is not seen."""
+def pressed_later(phase):
+    """A brake whose pressure passes zero at the start, for some reason, and the numbers that move it."""
     height, frequency, factor, inertia = 4351.0, 1.9, 9e-4, 0.1
     d = cw.Driveline("begins")
     s = d.shaft("s", inertia=inertia, speed=0.0)
     d.add(cw.Torque("t", shaft=s, torque=6.0))
-    law, wave = cw.Coulomb(static=0.09, kinetic=0.09), cw.Sine(amplitude=height, frequency=frequency)
+    law = cw.Coulomb(static=0.09, kinetic=0.09)
+    wave = cw.Sine(amplitude=height, frequency=frequency, phase=phase, offset=-height * np.sin(phase))
     d.add(cw.Brake("b", shaft=s, friction=law, gain=factor / 0.09, pressure=wave))
-    rise = 2 * np.pi * frequency * height
-    for side, wanted in (("left", (factor * rise / inertia) ** 2 / rise), ("right", 0.0)):
+    rise = 2 * np.pi * frequency * height * np.cos(phase)
+    return d, (factor * rise / inertia) ** 2 / rise
+
+
+def test_a_pressure_that_begins_at_zero_may_begin_later():
+    """The jerk of a brake from there on lasts for less time; a pressure below zero for a nanosecond is not seen."""
+    d, earlier = pressed_later(0.0)
+    for side, wanted in (("left", earlier), ("right", 0.0)):
         f = cw.differentiable(d, 0.05, of=cw.squared_jerk("s"), by="b.pressure.offset", side=side)
         assert f.gradient().matrix[0, 0] == pytest.approx(wanted, rel=1e-6, abs=1e-6)
+
+
+@pytest.mark.parametrize("phase", [-0.3, -np.pi / 6])
+@pytest.mark.parametrize("by", [["amplitude", "phase"], ["offset", "amplitude"], ["offset", "phase"]])
+def test_numbers_that_move_a_pressure_at_zero_against_each_other(phase, by):
+    """Two of them together leave it where it is: each is looked at alone."""
+    d, _ = pressed_later(phase)
+    names = [f"b.pressure.{name}" for name in by]
+    for side in ("left", "right"):
+        both = cw.differentiable(d, 0.05, of=cw.squared_jerk("s"), by=names, side=side).gradient().matrix[0]
+        alone = [
+            cw.differentiable(d, 0.05, of=cw.squared_jerk("s"), by=name, side=side).gradient().matrix[0, 0]
+            for name in names
+        ]
+        assert both == pytest.approx(alone, rel=1e-6, abs=1e-6)
+    with pytest.raises(cw.NoGradient):
+        cw.differentiable(d, 0.05, of=cw.squared_jerk("s"), by=names).gradient()
+
+
+@pytest.mark.parametrize("turns", [1, 2, -1])
+def test_a_size_that_moves_the_start_of_a_wave_by_round_off_has_a_derivative(turns):
+    """The sine of whole turns is some 1e-16."""
+    values = [
+        cw.differentiable(pressed_later(phase)[0], 0.05, of=cw.squared_jerk("s"), by="b.pressure.amplitude").gradient()
+        for phase in (0.0, 2 * np.pi * turns)
+    ]
+    assert values[1].matrix[0, 0] == pytest.approx(values[0].matrix[0, 0], rel=1e-6)

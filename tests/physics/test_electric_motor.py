@@ -275,6 +275,7 @@ def test_driven_from_rest_it_loses_what_its_torque_there_does(way):
     ("values", "words"),
     [
         ({"max_torque": [(-10.0, 5.0), (10.0, 5.0)]}, r"starts at -10"),
+        ({"max_torque": "100 bar"}, r"has a unit that does not fit; give it in \[N m\]"),
         ({"losses": ((1.0,),)}, r"needs speeds and torques"),
         ({"speeds": SPEEDS, "torques": TORQUES}, r"belongs to a map"),
         ({"speeds": SPEEDS, "torques": TORQUES, "losses": ((1.0, 2.0),)}, r"must have 3 rows of 3 numbers"),

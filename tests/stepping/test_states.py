@@ -601,7 +601,7 @@ def lossy_box() -> cw.Driveline:
 
 
 def lossy_ring() -> cw.Driveline:
-    """A lossy mesh and a locked clutch that hold a shaft in two ways, beside a weaker one; its pressure rises."""
+    """A lossy mesh and a locked clutch that hold a shaft in two ways, beside a weaker one; one pressure falls."""
     d = cw.Driveline("lossy ring")
     a, b = d.shaft("a", inertia=0.08), d.shaft("b", inertia=0.07)
     d.add(cw.Torque("drive", shaft=b, torque=12.0))

@@ -20,8 +20,8 @@ def dependent_sets(
     """Sets of contacts, among the closed ones or all, that depend on each other when they are locked together.
 
     `rates` are the directions of the named contacts, share by independent speed. Parallel clutches are such a set, or
-    three clutches in a ring. Their motion and the load that they carry together are unique; their torques are shared
-    in proportion to capacity.
+    three clutches in a ring. Their motion and the load that they carry together are unique; how they share
+    it is a convention: by capacity, or, beside gears with losses, in some way that keeps all limits.
     """
     places = [place for place, name in enumerate(names) if closed is None or name in closed]
     sets = _Elimination([rates[place] for place in places]).sets(ROUND_OFF)

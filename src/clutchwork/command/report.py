@@ -25,6 +25,7 @@ if TYPE_CHECKING:
     from clutchwork.run.trajectory import Trajectory
 
 MOST_LINES = 40
+SHARES = "how they share is a convention"
 # signals whose last value is reported
 FINAL = (".speed", ".temperature")
 
@@ -82,7 +83,7 @@ def dependent_text(run: Trajectory) -> list[str]:
         return []
     found = run.dependent[:MOST_LINES]
     lines = [f"{phase.begin:.6f} to {phase.end:.6f} s: {' '.join(phase.contacts)}" for phase in found]
-    return ["locked contacts that depend on each other; they share their load by capacity:\n" + "\n".join(lines)]
+    return [f"locked contacts that depend on each other; {SHARES}:\n" + "\n".join(lines)]
 
 
 def hint_text(hints: Hints) -> list[str]:
@@ -94,7 +95,7 @@ def effort_text(run: Trajectory) -> str:
     """Steps and time that the run took."""
     s = run.statistics
     return (
-        f"{run.time[-1]:g} s computed in {1e3 * s['core_seconds']:.3f} ms"
+        f"{run.time[-1] - run.time[0]:g} s computed in {1e3 * s['core_seconds']:.3f} ms"
         f" ({1e3 * s['seconds']:.1f} ms with all signals at {counted(len(run), 'instants')}),"
         f" {counted(int(s.get('steps', 0)), 'steps')}, {s.get('rejected', 0):g} rejected,"
         f" {counted(len(run.events), 'events')}"
@@ -132,7 +133,7 @@ def model_text(system: System, shafts: tuple[str, str] | None) -> str:
     parts = [f"{system.name}: no mistakes", paragraphs(has, width())]
     if system.dependent:
         sets = [f"  {' '.join(names)}" for names in system.dependent]
-        head = "depend on each other when locked together, and share their load by capacity:"
+        head = f"depend on each other when locked together; {SHARES}:"
         parts.append("\n".join([head, *_first(sets)]))
     # hints tell of redundant gears
     parts += [paragraphs(note, width()) for note in system.notes if "redundant" not in note]

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -22,17 +22,30 @@ Mask = NDArray[np.bool_]
 PIECE = 12
 # a value that is zero, of what it is made of
 ROUND_OFF = 1e-15
-# so long it must be below zero to be seen [s]
-SEEN = 1e-7
+# what a number makes of it by round-off, for all of itself
+BY_ROUND_OFF = 1e-12
+# so long it must be below zero to be seen [s], and so far a number is moved for that at most, of its size
+SEEN, FARTHEST = 1e-7, 1e-2
+
+
+class Unpressed(NamedTuple):
+    """An interval in which such a signal is zero."""
+
+    since: float  # s
+    why: str
+    numbers: Mask  # those that would raise it there
+    one_way: bool  # all of them the same way
+    far: Array  # how far they must be moved for that to be seen
 
 
 def unpressed(
-    chart: Chart, words: Array, slopes: Slopes, names: Sequence[str], begin: float, end: float
-) -> Iterator[tuple[float, str, Mask, Array]]:
-    """Intervals in which they are zero: their start [s], a message, and the numbers that would raise them there.
+    chart: Chart, words: Array, slopes: Slopes, names: Sequence[str], sizes: Array, run: tuple[float, float]
+) -> Iterator[Unpressed]:
+    """Intervals in which they are zero.
 
-    Then how far these must be moved for that to be seen. Parameters: begin and end, of the run [s].
+    Parameters: sizes, of the numbers; run, its begin and end [s].
     """
+    begin, end = run
     system, (time, _), (first, size) = chart.assembled.system, *map(chart.words_in, ("segment_time", "segment_coef"))
     for number in pressing(system) if slopes.touch(first, size) else ():
         start, count = (int(system.arrays[f"input_{what}"][number]) for what in ("first", "count"))
@@ -41,19 +54,16 @@ def unpressed(
         begins = words[time + start : time + start + count]
         bounds = np.r_[begins, begins[0] + period if period > 0.0 else np.inf]
         for piece in np.flatnonzero(~pieces[:, :4].any(axis=1) & ~pieces[:, [4, 8]].any(axis=1)).tolist():
-            moved: Mask = np.any(slopes.matrix[slopes.within(first + PIECE * (start + piece), 4)] != 0.0, axis=0)
+            moves = slopes.matrix[slopes.within(first + PIECE * (start + piece), 4)]
+            moved: Mask = np.any(moves != 0.0, axis=0)
             since, until = _first_time(bounds, piece, period, begin)
             if moved.any() and since < end and until > begin:
                 since, until = max(since, begin), min(until, end)
                 free = ", ".join(names[column] for column in np.flatnonzero(moved).tolist())
                 what = f"{system.inputs[number].name} is 0 from {since:g} to {until:g} s"
-                yield (
-                    since,
-                    f"{what}, where a little more of {free} acts and a little less does not",
-                    moved,
-                    np.zeros(len(names)),
-                )
-        yield from _at_knots(system, number, pieces, bounds, slopes, first + PIECE * start, (begin, end))
+                why = f"{what}, where a little more of {free} acts and a little less does not"
+                yield Unpressed(since, why, moved, _are_one_way(moves), np.zeros(len(names)))
+        yield from _at_knots(system, number, pieces, bounds, slopes, first + PIECE * start, sizes, run)
 
 
 def _first_time(bounds: Array, piece: int, period: float, begin: float) -> tuple[float, float]:
@@ -71,8 +81,15 @@ def _first_time(bounds: Array, piece: int, period: float, begin: float) -> tuple
 
 
 def _at_knots(
-    system: System, number: int, pieces: Array, bounds: Array, slopes: Slopes, first: int, run: tuple[float, float]
-) -> Iterator[tuple[float, str, Mask, Array]]:
+    system: System,
+    number: int,
+    pieces: Array,
+    bounds: Array,
+    slopes: Slopes,
+    first: int,
+    sizes: Array,
+    run: tuple[float, float],
+) -> Iterator[Unpressed]:
     """Knots at which a load that is zero there and not beside it begins or ends.
 
     Parameters: first, the word of the first piece; run, its begin and end [s].
@@ -83,13 +100,20 @@ def _at_knots(
     waves = pieces[:, [4, 8]] * np.sin(pieces[:, [6, 10]])
     nothing = ROUND_OFF * np.abs(pieces[:, [0, 4, 8]]).sum(axis=1)
     for piece in np.flatnonzero((np.abs(pieces[:, 0] + waves.sum(axis=1)) <= nothing) & acts & goes_on).tolist():
-        by_numbers = np.abs(_begins(pieces[piece], slopes, first + PIECE * piece))
-        moved = by_numbers > 0.0
+        moves = _begins(pieces[piece], slopes, first + PIECE * piece)
+        # a wave that begins at zero is moved by its size by round-off alone
+        moved = np.abs(moves) * sizes > BY_ROUND_OFF * np.abs(pieces[piece, [0, 4, 8]]).sum()
         time = float(bounds[piece])
         if moved.any() and run[0] <= time < run[1]:
             what = f"{system.inputs[number].name} is 0 at its knot at {time:g} s, where it begins or ends"
-            far = np.where(moved, SEEN * _rate(pieces[piece]) / np.where(moved, by_numbers, 1.0), 0.0)
-            yield time, f"{what}; give that point a value", moved, far
+            far = SEEN * _rate(pieces[piece]) / np.where(moved, np.abs(moves), np.inf)
+            far = np.where(far <= FARTHEST * sizes, far, 0.0)
+            yield Unpressed(time, f"{what}; give that point a value", moved, _are_one_way(moves[None, moved]), far)
+
+
+def _are_one_way(moves: Array) -> bool:
+    """Whether all numbers move a signal the same way: else two of them may leave it as it is together."""
+    return bool(np.all(moves >= 0.0) or np.all(moves <= 0.0))
 
 
 def _begins(piece: Array, slopes: Slopes, first: int) -> Array:

@@ -36,7 +36,7 @@ Mask = NDArray[np.bool_]
 
 # arrays without which no number changes how a run starts, and which loads press
 STARTS = ("segment_coef", "contact_rate_value", "initial_speed", "initial_state")
-# what lasts less than some nanoseconds is not seen: a slip that starts so many steps beside zero, and a state
+# what lasts less than some nanoseconds is not seen: so many steps beside zero a slip starts, and a state
 LET_GO, BEHIND_THE_START = 1e2, 1e3
 
 
@@ -48,7 +48,7 @@ class Doubt(NamedTuple):
     numbers: Mask
     # what a number does on one side is the same wherever the others are on that side
     one_way: bool = False
-    # how much farther beside the point it is looked at, and at least how far: events close to the start are not seen
+    # how much farther beside the point it is looked at, and at least how far: what lasts too short is not seen
     width: float = 1.0
     least: float | Array = 0.0
 
@@ -170,8 +170,8 @@ class Doubts:
             return
         names = [one.name for one in self.runs.task.parameters]
         begin, end = self.runs.wanted.begin, self.runs.wanted.t_end
-        for time, why, numbers, far in unpressed(chart, words, self.point.slopes, names, begin, end):
-            yield Doubt(why, self._up_to(time), numbers, one_way=True, least=far)
+        for one in unpressed(chart, words, self.point.slopes, names, self.point.sizes, (begin, end)):
+            yield Doubt(one.why, self._up_to(one.since), one.numbers, one.one_way, least=one.far)
         every = np.ones(len(self.lines), dtype=bool)
         for why, numbers in at_rest(chart, words, self.point.slopes):
             yield Doubt(why, every, numbers, width=LET_GO)

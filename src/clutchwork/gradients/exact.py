@@ -36,6 +36,8 @@ FAR = 1e300
 AT_ONCE = 8
 # factor of the tighter tolerance at which rough derivatives are taken again, and the least one
 TIGHTER, LEAST = 1e-2, 1e-12
+# least factor between two of these tolerances
+FAR_APART = 10.0
 # what the tightest two runs may differ by on a rough derivative, of the value over the number
 APART = 1e-3
 # a derivative may miss so much of the relative tolerance of a run
@@ -70,9 +72,10 @@ class Exact:
     def _tighter(self) -> Exact | None:
         """The same with a tighter tolerance."""
         options = self.task.options
-        rtol = max(options.rtol * TIGHTER, LEAST)
-        if rtol >= options.rtol:
+        # the last two are far enough apart to be compared
+        if options.rtol <= FAR_APART * LEAST:
             return None
+        rtol = options.rtol * TIGHTER if options.rtol * TIGHTER > FAR_APART * LEAST else LEAST
         changes = {"rtol": rtol, "atol": options.atol * rtol / options.rtol}
         return Exact(replace(self.task, options=options.changed(changes)), again=True, words=self.runs.words)
 
@@ -208,7 +211,7 @@ class Exact:
         except NoGradient as none:
             raise bends_of(none, self.task) from None
         notes = [*run.notes, *noted(self.task.system, run.primal.grazes, run.primal.decided), *self._steep]
-        notes += [f"{one.name}: {STILL_ROUGH}" for one in found if self._repeats(one)]
+        notes += [f"{one.name}: {STILL_ROUGH}" for one in found if self._repeats(one) and not one.is_open]
         return found, self._doubts(point, run, found), tuple(dict.fromkeys(notes))
 
     @cached_property

@@ -265,7 +265,7 @@ def add_extreme(primal: Primal, one: Extreme, found: Located, into: Functional) 
     if end is None and not found.is_flat:
         place = several_steps.top(primal, partial(_rows_of, primal, one), *place)
     whole = [(place[0], sign * steps.at(*place))]
-    inside = end is None or not 0 < end < len(steps)
+    inside = end is None or end == len(steps) or (end == 0 and primal.between[0][0] == SMOOTH)
     if not inside and primal.between[0][end] == SMOOTH and not found.is_level:
         whole = of_bend(primal, one.signal, int(end or 0), sign) or whole
     held = torque_at_limit(primal, one.signal, found.step) if not inside and found.share == 1.0 else None

@@ -65,7 +65,9 @@ def missed(primal: Primal, signal: str, acceleration: Array, *, is_massless: boo
     degree = PARTS - 1 if is_massless else PARTS
     last = MISSED * np.abs(np.einsum("ni,ni->n", steps.basis[:, degree], acceleration)) / steps.length
     bends = np.r_[False, np.abs(behind - before)[1:-1] > last[1:] + last[:-1]]
-    for step in np.flatnonzero(bends | (primal.between[0] != SMOOTH)).tolist():
+    # of an event with which the first step begins the other side is too short to be seen
+    moved = np.r_[False, primal.between[0][1:] != SMOOTH]
+    for step in np.flatnonzero(bends | moved).tolist():
         moves, lost = primal.functional(), (float(last[step - 1]), float(last[step]))
         if primal.between[0][step] != SMOOTH:
             add_shift(primal, step, 1.0, moves)

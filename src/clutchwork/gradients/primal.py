@@ -112,7 +112,8 @@ class Primal:
         met += [(EVENT, float(time), number) for number, time in enumerate(self.events[:, 0])]
         for kind, time, number in met:
             place = self._nearest(time)
-            if place > 0:
+            # the first step begins at an event where what is before that is too short to be one
+            if place > 0 or (kind == EVENT and self._begins_at(time)):
                 kinds[place], which[place] = kind, number
         return kinds, which
 
@@ -127,6 +128,10 @@ class Primal:
         """Instants [s] at which a knot meets one that moves differently, and the steps that begin there."""
         ends = np.r_[self.steps.begin, self.steps.end[-1:]]
         return [(float(time), int(np.argmin(np.abs(ends - time)))) for time in self.knots.meets] if len(ends) else []
+
+    def _begins_at(self, time: float) -> bool:
+        """Whether the first step begins at an instant."""
+        return len(self.steps) > 0 and abs(float(self.steps.begin[0]) - time) <= SAME * (1.0 + abs(time))
 
     def _nearest(self, time: float) -> int:
         """The step that begins nearest to an instant."""

@@ -210,7 +210,8 @@ class Trajectory(Exports):
     def dependent(self) -> tuple[DependentPhase, ...]:
         """When contacts were locked whose directions depend on each other, so that the torque of each is a convention.
 
-        Their motion and the load that they carry together are unique; it is shared in proportion to capacity.
+        Their motion and the load that they carry together are unique; it is shared in proportion to capacity or, beside
+        gears with losses, in some way that keeps all limits.
         """
         from clutchwork.results.dependence import dependent_phases
 

@@ -174,8 +174,8 @@ def flanks(seen: Seen) -> Iterator[Fault]:
         closes = side * rate[:, number] >= 0.0
         missing = np.where(closes, spring - push, -push)
         wrong = np.maximum(missing, np.where(depth < 0.0, np.abs(push), 0.0))
-        # the border of the gap is found to a share of it
-        near = part.stiffness * 1e-9 * max(1e-3, float(np.abs(state).max(initial=0.0)))
+        # the border of the gap is known as states are
+        near = part.stiffness * 1e-9 * max(1.0, float(np.abs(state).max(initial=0.0)))
         bad = wrong - 1e-7 * (spring + np.abs(push)) - near - 1e-9
         words = lambda at, b=branch, p=push, d=depth: f"{b.name} pushes with {p[at]:.6g} N m {d[at]:.3g} rad deep"  # noqa: E731
         yield from seen.worst("flank", seen.kind(branch), bad, words)

@@ -39,9 +39,7 @@ bool settle_stiff(Form& form, Step<Form>& step, double s, double* y, double* d) 
   // of the torques; of what is missed; in tolerances, and the loosest of these
   constexpr double enough = 1e-6, left = 0.1, most = 1e3, tight = 1e-6;
   Workspace<double>& ws = form.ws;
-  // the sign of a load, which friction follows, is that of the motion that goes on
-  const bool closely = Form::full ? ws.loads.n_sliding == 0 : follows_closely(ws, step.h);
-  if (!closely || !step.calls->stiff) return false;
+  if (!step.calls->stiff || !(Form::full || follows_closely(ws, step.h))) return false;
   double *slope = step.k(7), *change = step.k(6);
   const double missed = residual(form, step, s, d, slope, change);
   if (!(missed > enough * torque_size(ws)) || !correct(form, step.h, change)) return false;
