@@ -171,3 +171,13 @@ def test_a_size_that_moves_the_start_of_a_wave_by_round_off_has_a_derivative(tur
         for phase in (0.0, 2 * np.pi * turns)
     ]
     assert values[1].matrix[0, 0] == pytest.approx(values[0].matrix[0, 0], rel=1e-6)
+
+
+def test_a_pressure_at_zero_beside_a_number_at_a_kink_of_the_driveline():
+    """A torque that begins with the run has no derivative by when it begins; the others have theirs."""
+    d, earlier = pressed_later(0.0)
+    d.add(cw.Torque("more", shaft=d.shafts[0], torque=cw.Step(height=0.5, start=0.0)))
+    names = ["more.torque.start", "b.pressure.offset", "b.pressure.amplitude"]
+    found = cw.differentiable(d, 0.05, of=[cw.squared_jerk("s"), "s.speed"], by=names, side="left").gradient()
+    assert found.matrix[0, 1] == pytest.approx(earlier, rel=1e-6)
+    assert np.isfinite(found.matrix[:, 2]).all()

@@ -230,7 +230,14 @@ class Exact:
             rest = self._with(x, np.flatnonzero(kept).tolist())
             found, doubts, notes = rest._known(x[kept])  # noqa: SLF001, its own kind
         all_ = np.ones(len(found), dtype=bool)
-        doubts = [one._replace(numbers=spread(one.numbers, kept, fill=False), one_way=False) for one in doubts]
+        doubts = [
+            one._replace(
+                numbers=spread(one.numbers, kept, fill=False),
+                least=spread(np.broadcast_to(one.least, one.numbers.shape), kept, fill=0.0),
+                one_way=False,
+            )
+            for one in doubts
+        ]
         doubts += [Doubt(why, all_, np.arange(len(x)) == number) for number, why in bent.items()]
         nan = float("nan")
         whole = [one._replace(left=spread(one.left, kept, nan), right=spread(one.right, kept, nan)) for one in found]
