@@ -63,9 +63,9 @@ struct Held {
   int* driven = nullptr;  ///< redundant contacts whose slip the prescribed speeds can move though the independent
                           ///< contacts are locked
   T* tie = nullptr;  ///< n_redundant x contacts: direction of a redundant contact in terms of the independent contacts
-  bool too_many = false;  ///< more than there is room for: the system is not what it says
-  int rank = 0;           ///< of the directions of the locked contacts where they were sorted
-  bool vanished = false;  ///< nothing is left of an independent contact where the sets were looked at last
+  bool too_many = false;       ///< more than there is room for: the system is not what it says
+  int rank = 0;                ///< of the directions of the locked contacts where they were sorted
+  bool vanished = false;       ///< nothing is left of an independent contact where the sets were looked at last
   double* strength = nullptr;  ///< what each locked contact held where they were sorted, where some follow loads
 
   // scratch
