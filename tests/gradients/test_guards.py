@@ -194,3 +194,20 @@ def test_derivatives_by_a_dog_clutch_whose_flanks_part_are_those_of_differences(
         function = cw.differentiable(d, 0.7, of=["a.speed", "b.speed"], by="d.gap", **TIGHT)
         for one in by_differences.compared(function, function.gradient().matrix, np.array([15.0, 15.0])):
             assert np.all(one.missed < np.maximum(1e-6, 100 * one.doubt)), f"seed {seed}: {one}"
+
+
+@pytest.mark.parametrize("limits", [(0.0, 1.0), (0.0, 0.0)])
+@pytest.mark.parametrize("phase", [0.3, 2.0])
+def test_a_kinetic_torque_that_passes_zero_opens_and_closes_a_clutch(limits: tuple[float, float], phase: float) -> None:
+    """Below zero the load of the clutch is a trace: the rate there is not that of both sides."""
+    size, frequency = 0.168, 13.56
+    d = cw.Driveline("passes")
+    s = d.shaft("s", inertia=1.0)
+    wave = cw.Sine(amplitude=size, frequency=frequency, phase=phase)
+    d.add(cw.FundamentalClutch("c", base=d.housing, follower=s, kinetic=wave, upper=limits[0], lower=limits[1]))
+    function = cw.differentiable(d, 0.2, of=cw.break_away("c"), by=["c.kinetic.offset", "c.kinetic.phase"], **TIGHT)
+    omega = 2 * np.pi * frequency
+    opens = (np.pi - phase) / omega
+    found = function.gradient()
+    assert found.values[0] == pytest.approx(opens, rel=1e-12)
+    assert found.matrix[0] == pytest.approx([1 / (size * omega), -1 / omega], rel=1e-8)

@@ -181,3 +181,30 @@ def test_a_pressure_at_zero_beside_a_number_at_a_kink_of_the_driveline():
     found = cw.differentiable(d, 0.05, of=[cw.squared_jerk("s"), "s.speed"], by=names, side="left").gradient()
     assert found.matrix[0, 1] == pytest.approx(earlier, rel=1e-6)
     assert np.isfinite(found.matrix[:, 2]).all()
+
+
+@pytest.mark.parametrize(
+    ("force", "number", "of"),
+    [
+        # faster than the unit of a force in a microsecond
+        (cw.Ramp(height=2000.0, duration=0.01), "offset", cw.squared_jerk("s")),
+        (cw.Sine(amplitude=800.0, frequency=40.0), "offset", cw.squared_jerk("s")),
+        # a wave without size presses for either sign
+        (cw.Sine(amplitude=0.0, frequency=1.3), "amplitude", "s.speed"),
+        (cw.Sine(amplitude=0.0, frequency=1.3, phase=0.4, start=0.1), "amplitude", "s.speed"),
+    ],
+)
+def test_a_force_that_is_zero_and_acts_for_a_little_more_or_less(force, number, of):
+    """Each side has the derivative of differences."""
+    d = cw.Driveline("presses")
+    s = d.shaft("s", inertia=0.1, speed=0.0)
+    d.add(cw.Torque("t", shaft=s, torque=6.0))
+    law = cw.Coulomb(static=0.09, kinetic=0.09)
+    d.add(cw.Brake("b", shaft=s, friction=law, gain=0.01, normal_force=force))
+    by, end = f"b.normal_force.{number}", 0.004 if not isinstance(of, str) else 0.5
+    f = cw.differentiable(d, end, of=of, by=by, **TIGHT)
+    for side, step in (("left", -1e-2), ("right", 1e-2)):
+        found = cw.differentiable(d, end, of=of, by=by, side=side, rtol=1e-8).gradient().matrix[0, 0]
+        assert found == pytest.approx((f(f.x0 + step)[0] - f(f.x0)[0]) / step, rel=1e-5, abs=1e-8)
+    with pytest.raises(cw.NoGradient):
+        f.gradient()

@@ -95,7 +95,7 @@ def effort_text(run: Trajectory) -> str:
     """Steps and time that the run took."""
     s = run.statistics
     return (
-        f"{run.time[-1] - run.time[0]:g} s computed in {1e3 * s['core_seconds']:.3f} ms"
+        f"{run.time[-1] - run.options.t_start:g} s computed in {1e3 * s['core_seconds']:.3f} ms"
         f" ({1e3 * s['seconds']:.1f} ms with all signals at {counted(len(run), 'instants')}),"
         f" {counted(int(s.get('steps', 0)), 'steps')}, {s.get('rejected', 0):g} rejected,"
         f" {counted(len(run.events), 'events')}"

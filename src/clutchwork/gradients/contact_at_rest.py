@@ -20,6 +20,7 @@ Mask = NDArray[np.bool_]
 
 # numbers of a piece of a signal: a cubic, and size, frequency, phase and decay of two waves
 PIECE = 12
+CUBIC, WAVES = (0, 1, 2, 3), (4, 8)
 # a value that is zero, of what it is made of
 ROUND_OFF = 1e-15
 # what a number makes of it by round-off, for all of itself
@@ -54,15 +55,17 @@ def unpressed(
         begins = words[time + start : time + start + count]
         bounds = np.r_[begins, begins[0] + period if period > 0.0 else np.inf]
         for piece in np.flatnonzero(~pieces[:, :4].any(axis=1) & ~pieces[:, [4, 8]].any(axis=1)).tolist():
-            moves = slopes.matrix[slopes.within(first + PIECE * (start + piece), 4)]
-            moved: Mask = np.any(moves != 0.0, axis=0)
+            # a wave acts whatever its sign
+            cubic, waves = (slopes.of(first + PIECE * (start + piece) + np.array(words)) for words in (CUBIC, WAVES))
+            moved: Mask = np.any(cubic != 0.0, axis=0) | np.any(waves != 0.0, axis=0)
             since, until = _first_time(bounds, piece, period, begin)
             if moved.any() and since < end and until > begin:
                 since, until = max(since, begin), min(until, end)
                 free = ", ".join(names[column] for column in np.flatnonzero(moved).tolist())
                 what = f"{system.inputs[number].name} is 0 from {since:g} to {until:g} s"
                 why = f"{what}, where a little more of {free} acts and a little less does not"
-                yield Unpressed(since, why, moved, _are_one_way(moves), np.zeros(len(names)))
+                one_way = _are_one_way(cubic) and not waves.any()
+                yield Unpressed(since, why, moved, one_way, np.zeros(len(names)))
         yield from _at_knots(system, number, pieces, bounds, slopes, first + PIECE * start, sizes, run)
 
 
@@ -107,7 +110,7 @@ def _at_knots(
         if moved.any() and run[0] <= time < run[1]:
             what = f"{system.inputs[number].name} is 0 at its knot at {time:g} s, where it begins or ends"
             far = SEEN * _rate(pieces[piece]) / np.where(moved, np.abs(moves), np.inf)
-            far = np.where(far <= FARTHEST * sizes, far, 0.0)
+            far = np.minimum(far, FARTHEST * sizes)
             yield Unpressed(time, f"{what}; give that point a value", moved, _are_one_way(moves[None, moved]), far)
 
 

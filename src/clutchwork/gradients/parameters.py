@@ -139,7 +139,18 @@ def _number(aim: Target, name: str) -> Tunable:
     if spec.what == "option" and aim.path[-1] == "tolerance" and not start:
         # contacts lock at the exact zero of their slip, which no value beside it does
         raise Unfit(f"{name} is 0, the exact zero of the slip, beside which there is another rule; give it a value")
-    return Tunable(name, name, (), unit_of(aim), start, abs(start) or 1.0, *spec.ends)
+    return Tunable(name, name, (), unit_of(aim), start, abs(start) or _size_beside(aim), *spec.ends)
+
+
+def _size_beside(aim: Target) -> float:
+    """What a change of a number at zero is compared with: the largest number of its signal with its unit, else 1."""
+    around = Target(aim.owner, aim.path[:-1])
+    signal = field_of(around)[0] if around.path else None
+    if not isinstance(signal, Signal):
+        return 1.0
+    others = (Target(aim.owner, (*around.path, word)) for word in changeable(signal))
+    alike = (field_of(one)[0] for one in others if unit_of(one) == unit_of(aim))
+    return max((abs(float(one)) for one in alike if isinstance(one, Real)), default=0.0) or 1.0
 
 
 def _inside(value: Any, name: str) -> str:

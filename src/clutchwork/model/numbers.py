@@ -166,7 +166,7 @@ def curve_problems(value: Any, spec: Spec, at: At) -> Iterator[Problem]:
     """Points with increasing abscissae, or a number where that is allowed."""
     if is_plain_curve(value, spec):
         return
-    if spec.constant and (isinstance(value, Real) or has_unit(value)):
+    if spec.constant and (isinstance(value, Real) or (has_unit(value) and getattr(value, "ndim", 0) == 0)):
         yield from number_problems(value, spec, at)
         return
     if has_unit(value) or getattr(value, "ndim", 1) == 0 or not hasattr(value, "__len__") or len(value) == 0:

@@ -254,7 +254,7 @@ T knot_shift(Workspace<T>& ws) {
 /// is less and that it does not bend. docs/theory/gradients.md (3)
 template <class G, class Form, class T = typename Form::Scalar>
 double guard_rate(Form& form, Step<Form>& step, const Hit& hit, const T* velocity) {
-  constexpr double closest = 1e-5, straight = 1e-5;
+  constexpr double closest = 1e-5, straight = 1e-5, kinked = 0.1;
   double rate = 0, least = infinity;
   if constexpr (requires { G::rate(form, hit, velocity, rate); }) {
     if (G::rate(form, hit, velocity, rate)) return rate;
@@ -270,8 +270,7 @@ double guard_rate(Form& form, Step<Form>& step, const Hit& hit, const T* velocit
     return found;
   };
   const double here = plain(0);
-  double behind = 0;
-  bool found_behind = false;
+  double behind = 0, least_bent = infinity;
   for (double share = 1; share > 0.5 * closest; share *= 0.1) {
     const double reach = 0.01 * share * larger(form.ws.moved.span, 1e-12);
     own = ahead = true;
@@ -280,16 +279,19 @@ double guard_rate(Form& form, Step<Form>& step, const Hit& hit, const T* velocit
     double near = (next - plain(-reach)) / (2 * reach), far = (last - plain(-2 * reach)) / (4 * reach);
     double found = (4 * near - far) / 3;
     const double first = (next - here) / reach, second = (last - here) / (2 * reach);
-    if (ahead && !found_behind && abs(first - second) <= straight * larger(abs(first), abs(second)))
-      behind = 2 * first - second, found_behind = true;
+    const double bent = abs(first - second);
+    if (ahead && bent <= straight * larger(abs(first), abs(second)) && bent < least_bent)
+      behind = 2 * first - second, least_bent = bent;
     // before it another guard of the same element was less, as that which has just been passed
     if (!own && ahead) near = first, far = second, found = 2 * first - second, own = true;
     const double apart = own ? abs(near - far) : larger(abs(near - far), 1e300);
     if (apart < least || share == 1) rate = found, least = apart;
-    if (own && apart <= straight * larger(abs(near), abs(far))) return found;
+    // one with a kink at the hit, such as a load that is a trace below zero, has the slope of the side it is on there
+    const bool bends = ahead && abs(first - near) > kinked * larger(abs(first), abs(near));
+    if (own && !bends && apart <= straight * larger(abs(near), abs(far))) return found;
   }
   // what bends just before it is another event
-  return found_behind ? behind : rate;
+  return least_bent < infinity ? behind : rate;
 }
 
 /// Whether a guard did not pass zero where it was hit: what happened at the same instant has made it jump past.

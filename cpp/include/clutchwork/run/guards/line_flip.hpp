@@ -48,11 +48,12 @@ struct LineFlip {
       hit.take(s, l);
     }
   }
-  /// Loads follow accelerations, which an interpolant of stiff motion has less exactly.
+  /// Loads follow accelerations, which an interpolant of stiff motion has less exactly. Not beside transmissions, whose
+  /// ties are kept otherwise.
   template <class Form, class T = typename Form::Scalar>
   [[gnu::noinline]] static void settle_loads(Form& form, Step<Form>& step, double s) {
     if constexpr (std::is_same_v<T, double>) {
-      if (s <= 0 || s >= 1 || !settle_stiff(form, step, s, step.point(), step.slope())) return;
+      if (s <= 0 || s >= 1 || form.ws.ratios.n > 0 || !settle_stiff(form, step, s, step.point(), step.slope())) return;
       multipliers(form.ws, form.ws.observed.torque, true, form.ws.observed.carried);
       loads_seen(form.ws);
     }
