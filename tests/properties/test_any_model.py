@@ -239,12 +239,22 @@ MENDED: dict[str, list[int]] = {
     "a gear that jams where a clutch locks within its tolerance": [49018683],
     "a motor at rest whose torque passes a point of its losses, or that a sprag holds": [52013004, 52015629],
     "a contact without friction that is at rest for an instant": [52014398],
+    "rows of a steep law beside a screw that slips with its load": [53001045],
 }
 
 
 @pytest.mark.parametrize("seed", [seed for seeds in MENDED.values() for seed in seeds])
 def test_models_that_failed_once(seed: int) -> None:
     assert not faults(KEPT[str(seed)], seed, 0)
+
+
+@pytest.mark.parametrize("value", [cw.minimum("e1.impeller.torque"), cw.at("s0.speed", 0.0756601773064)])
+def test_a_converter_at_stall_is_at_the_begin_of_its_table(value: Any) -> None:
+    """Its table begins at zero: for less than that the converter is inside of it, for more before it."""
+    made = model.driveline(KEPT["300143"])
+    f = cw.differentiable(made, KEPT["300143"]["simulation"]["t_end"], of=value, by="e1.speed_ratio.values[1]")
+    with pytest.raises(cw.NoGradient, match=r'side="left" gives .*, side="right" gives'):
+        f.gradient()
 
 
 def test_an_impulse_within_a_run_is_none_of_its_start() -> None:

@@ -2,13 +2,20 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
+from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
 
+from clutchwork.assembly.changes import owners_of
 from clutchwork.gradients.words import Chart, Slopes
+from clutchwork.model.changes import field_of, target
 from clutchwork.model.parts import is_stop
+
+if TYPE_CHECKING:
+    from clutchwork.assembly.system import System
+    from clutchwork.gradients.parameters import Tunable
 
 Array = NDArray[np.float64]
 Mask = NDArray[np.bool_]
@@ -56,6 +63,19 @@ def at_zero(chart: Chart, slopes: Slopes) -> Iterator[tuple[str, Mask]]:
             if start == 0.0 and numbers.any():
                 why = f"{element.name} begins with {state.name} zero, on whose sides it has other equations"
                 yield why, numbers
+
+
+def at_border(system: System, parameters: Sequence[Tunable], x: Array) -> Iterator[tuple[str, Mask]]:
+    """What is said of tables that begin at zero, as that of a converter at stall, and the numbers that begin them."""
+    for number, one in enumerate(parameters):
+        if one.places == ((0,),) and x[number] == 0.0 and _is_rising(system, one.field):
+            what = f"{one.name} is 0, where its table begins, and what stands still is there"
+            yield f"{what}: for more it is before the table, for less inside of it", np.arange(len(x)) == number
+
+
+def _is_rising(system: System, field: str) -> bool:
+    aim = target(owners_of(system), field)
+    return aim is not None and bool(field_of(aim)[1].rising)
 
 
 def _driven(chart: Chart, number: int) -> Places:

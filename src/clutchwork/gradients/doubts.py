@@ -16,7 +16,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from clutchwork.base.classes import dataclass
-from clutchwork.gradients.beginning import at_rest, at_zero
+from clutchwork.gradients.beginning import at_border, at_rest, at_zero
 from clutchwork.gradients.contact_at_rest import unpressed
 from clutchwork.gradients.grazing import (
     crowded,
@@ -166,13 +166,15 @@ class Doubts:
 
     def _start(self) -> Iterator[Doubt]:
         chart, words = self.point.chart, self.point.words
+        every = np.ones(len(self.lines), dtype=bool)
+        for why, numbers in at_border(self.runs.task.system, self.runs.task.parameters, self.point.x):
+            yield Doubt(why, every, numbers)
         if chart.stays(*STARTS):
             return
         names = [one.name for one in self.runs.task.parameters]
         begin, end = self.runs.wanted.begin, self.runs.wanted.t_end
         for one in unpressed(chart, words, self.point.slopes, names, self.point.sizes, (begin, end)):
             yield Doubt(one.why, self._up_to(one.since), one.numbers, one.one_way, least=one.far)
-        every = np.ones(len(self.lines), dtype=bool)
         for why, numbers in at_rest(chart, words, self.point.slopes):
             yield Doubt(why, every, numbers, width=LET_GO)
         for why, numbers in at_zero(chart, self.point.slopes):

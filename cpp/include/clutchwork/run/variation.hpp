@@ -123,8 +123,6 @@ class Variation {
   /// A step of the derivatives from where they are, at the share `from` of the plain step, which ends at the time
   /// `end`, to `until` or less far; how far it got, -1: its length has become too short.
   double follow(double from, double until, double end) {
-    // guards of loads may have looked inside
-    if (step.dense && form.ws.loads.n_sliding > 0) forget_factor();
     fit(form, step);
     if (step.t + until * step.h <= ws_.moved.begin || slopes_.stay_zero()) return leap(from, until);
     auto as = [&](auto tag) { return follow_as<typename decltype(tag)::type>(from, until, end); };

@@ -1,6 +1,5 @@
 #pragma once
 #include <clutchwork/motion/mesh_loads.hpp>
-#include <clutchwork/run/correction.hpp>
 #include <clutchwork/run/event.hpp>
 #include <clutchwork/run/guards/inputs.hpp>
 #include <clutchwork/run/guards/torques.hpp>
@@ -40,22 +39,11 @@ struct LineFlip {
       const double noise = 1e-12 * torque_size(ws);
       auto f = [&](double s) {
         torques_at(form, step, s);
-        settle_loads(form, step, s);
         T by_load = T(0);
         return noise + value(line_clearance(ws, l, ws.observed.rate[k], by_load));
       };
       const double s = first_crossing(f, noise + start, noise + end, hit.s);
       hit.take(s, l);
-    }
-  }
-  /// Loads follow accelerations, which an interpolant of stiff motion has less exactly. Not beside transmissions, whose
-  /// ties are kept otherwise.
-  template <class Form, class T = typename Form::Scalar>
-  [[gnu::noinline]] static void settle_loads(Form& form, Step<Form>& step, double s) {
-    if constexpr (std::is_same_v<T, double>) {
-      if (s <= 0 || s >= 1 || form.ws.ratios.n > 0 || !settle_stiff(form, step, s, step.point(), step.slope())) return;
-      multipliers(form.ws, form.ws.observed.torque, true, form.ws.observed.carried);
-      loads_seen(form.ws);
     }
   }
   template <class Form, class T = typename Form::Scalar>
