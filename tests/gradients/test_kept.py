@@ -239,7 +239,8 @@ def test_a_jerk_that_a_knot_leaves_as_it_is(rtol: float) -> None:
     d.add(cw.PrescribedSpeed("motion", shaft=a, speed=cw.Sine(amplitude=5.0, frequency=5.5, offset=20.0)))
     d.add(cw.Torque("t", shaft=b, torque=cw.Pulse(height=1.4, period=0.0974, width=0.0359)))
     found = derivatives(d, 0.47, of=cw.squared_jerk("a"), by="t.torque.start", rtol=rtol, atol=rtol / 100)
-    assert found.matrix[0, 0] == 0.0
+    # round-off of the sum, over the period
+    assert abs(found.matrix[0, 0]) <= 1e-14 * found.values[0] / 0.0974
 
 
 def test_values_that_are_squares_of_a_number_at_zero_have_a_derivative_there() -> None:
