@@ -10,6 +10,7 @@ from pathlib import Path
 
 import pytest
 
+import clutchwork as cw
 from clutchwork.command.main import main
 from support.two_discs import MODEL
 
@@ -203,3 +204,13 @@ def test_a_reader_that_has_seen_enough_ends_it_quietly(model: Path) -> None:
         assert run.stderr is not None
         assert run.stderr.read() == b""
         assert run.wait() == 0
+
+
+def test_a_run_that_begins_later_says_how_long_it_is(capsys: pytest.CaptureFixture[str], tmp_path: Path) -> None:
+    """It computed from its start on, not from 0 s."""
+    d = cw.Driveline("later")
+    d.add(cw.Torque("t", shaft=d.shaft("s", inertia=1.0), torque=1.0))
+    d.simulation = {"t_end": 5.0}
+    d.save(tmp_path / "model.toml")
+    assert main(["run", str(tmp_path / "model.toml"), "--t-start", "2.3 s"]) == 0
+    assert "2.7 s computed in" in capsys.readouterr().out

@@ -63,8 +63,9 @@ def unpressed(
                 since, until = max(since, begin), min(until, end)
                 free = ", ".join(names[column] for column in np.flatnonzero(moved).tolist())
                 what = f"{system.inputs[number].name} is 0 from {since:g} to {until:g} s"
-                why = f"{what}, where a little more of {free} acts and a little less does not"
                 one_way = _are_one_way(cubic) and not waves.any()
+                acts = "a little less acts another way" if waves.any() else "a little less does not"
+                why = f"{what}, where a little more of {free} acts and {acts}"
                 yield Unpressed(since, why, moved, one_way, np.zeros(len(names)))
         yield from _at_knots(system, number, pieces, bounds, slopes, first + PIECE * start, sizes, run)
 

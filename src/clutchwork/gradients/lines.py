@@ -51,18 +51,14 @@ class Line(NamedTuple):
     several: str = ""  # why both sides differ
     rough: bool = False  # whether a run of a tighter tolerance knows its derivatives better
     missed: float = 0.0  # the most that is not known of one of them, of the value
-
-    @property
-    def is_open(self) -> bool:
-        """Whether runs of two tolerances do not agree on it, of a value that is rough at both."""
-        return self.several.endswith(NOT_AGREED)
+    is_open: bool = False  # whether runs of two tolerances do not agree on it, of a value that is rough at both
 
     def opened(self, numbers: NDArray[np.bool_]) -> Line:
         """The same where they do not agree on the derivatives by some numbers."""
         if not numbers.any():
             return self
         left, right = (np.where(numbers, np.nan, side) for side in (self.left, self.right))
-        return self._replace(left=left, right=right, several=f"{self.name} {NOT_AGREED}")
+        return self._replace(left=left, right=right, several=f"{self.name} {NOT_AGREED}", is_open=True)
 
     def refused(self, why: str) -> Line:
         """The same where it has none by the numbers that move it."""

@@ -300,7 +300,7 @@ template <class T>
 
 /// Sort the locked contacts into independent and redundant ones; all of them are independent where no directions depend
 /// on others. The torques of the independent ones make the loads: those that follow loads are the last of them.
-/// `again`: as at the start of the phase.
+/// `again`: in the order in which they were sorted last.
 template <class T>
 void list_locked(Workspace<T>& ws, bool again = false) {
   Held<T>& h = ws.held;
