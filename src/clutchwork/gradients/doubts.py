@@ -153,7 +153,8 @@ class Doubts:
         inside = knots[bisect_right(knots, self.runs.wanted.begin) :]
         apart = moving_apart(system, primal.grazes, primal.decided, self.runs.wanted.begin, sizes)
         for time, why in chain(refused(system, primal.decided), apart):
-            yield Doubt(why, self._up_to(time), self._all)
+            width = BEHIND_THE_START if time <= self.runs.wanted.begin * (1.0 + SAME) else 1.0
+            yield Doubt(why, self._up_to(time), self._all, width=width)
         for time, why in jumping_together(system, primal.grazes, sizes):
             yield Doubt(why, self._up_to(time), self._moving_knots())
         found = chain(

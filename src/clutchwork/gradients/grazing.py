@@ -40,7 +40,7 @@ CROWD, CROWDED = 6, 1e-4
 BY_NAME = {name: number for number, (name, _) in CAUSES.items()}
 BORDERS = ("line", "law", "process", "flip")
 # at these something may stay, though nothing moves with them
-STAYS = ("multiplier", "set", "bend")
+STAYS = ("multiplier", "set", "bend", "load")
 # kind of a jump of a torque that no guard sees
 UNSEEN = 1000
 ASK = "; ask for one side of it"

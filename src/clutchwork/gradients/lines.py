@@ -107,7 +107,7 @@ def _nothing(name: str, one: Measure, t_end: float) -> str:
     if not one.changes:
         return f"{name} does not happen before {t_end:g} s; take one that does, or a later end time"
     if one.unseen > UNSEEN:
-        what = f"{min(one.unseen, 1.0):.2%} of {name} is from motion that settles within a few nanoseconds"
+        what = f"{min(100.0 * one.unseen, 100.0):.3g} % of {name} is from motion that settles within a few nanoseconds"
         return f"{what}, {UNSEEN_MOTION}"
     return ""
 

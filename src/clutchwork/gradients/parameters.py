@@ -128,9 +128,11 @@ def _range(found: list[Tunable], given: str, name: str) -> list[Tunable]:
 
 def _number(aim: Target, name: str) -> Tunable:
     value, spec = field_of(aim)
-    if spec.flag or spec.choices or spec.whole or spec.fixed:
-        kind = "whole number" if spec.whole or spec.fixed else "choice"
+    if spec.flag or spec.choices or spec.whole:
+        kind = "whole number" if spec.whole else "choice"
         raise Unfit(f"{name} is a {kind}, which has no derivative; sweep over it")
+    if spec.fixed and not value:
+        raise Unfit(f"{name} is 0, and a little more of it is a state more; give it a value above 0")
     if isinstance(value, Signal) and list(changeable(value)) == ["value"]:
         value = vars(value)["value"]
     if not isinstance(value, Real):

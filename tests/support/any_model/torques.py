@@ -97,7 +97,9 @@ def _slipping(seen: Seen, number: int, branch: Branch) -> Iterator[Fault]:
     of, component = seen.kind(branch), branch.component
     scale, slip = seen.scale(branch), seen.speed @ seen.contacts[:, number]
     mode, torque = (seen.part(name)[:, number] for name in ("contact_mode", "contact_torque"))
-    tolerance = max(SPEED * scale, component.tolerance if hasattr(component, "tolerance") else 0.0, 1e-7)
+    # a slip ends where it is as large as its tolerance, but for round-off
+    own = component.tolerance + 1e-13 * scale if hasattr(component, "tolerance") else 0.0
+    tolerance = max(SPEED * scale, own, 1e-7)
     tolerance = max(tolerance, component.friction.band if component.friction is not None else 0.0)
     if not is_stop(component):
         for sign, word in ((FORWARD, "forward"), (BACKWARD, "backward")):

@@ -110,30 +110,58 @@ struct LoadedLimit {
     }
     return price[i];
   }
-  /// What a row of a bound takes of the torque of member j, as in lay_row.
-  T taken(int row, int j) const {
-    const int f = row / 2, direction = row % 2 == 0 ? backward : forward;
-    const Bound<T> bound = bound_of(ws, member[follower[f]], direction, T(0), 0);
-    const T slope = bound.slope[line[row]];
-    return (follower[f] == j ? T(-direction) : T(0)) - slope * share(load_of_member(f), j);
-  }
-  /// How the motion in which the set gives way moves member i, up to its sign: what is left of the prices without what
-  /// the torques do to loads. docs/theory/load-dependent.md (14)
-  T motion_of(int i) const {
-    T sum = T(0);
-    for (int r = 0; r < set.rank; ++r) {
-      T own = price[r];
-      for (int row = 0; row < 2 * n_loads; ++row) own -= price[set.n + row] * taken(row, r);
-      sum += set.column[i * set.rank + r] * own;
+  /// The way in which the set gives way, for its independent contacts: that of the load, as far as it moves none of
+  /// those that hold on, which have no price. Positive is backward. docs/theory/load-dependent.md (14)
+  void find_motion(T* way) {
+    constexpr double round_off = 1e-9;
+    const int n = set.rank;
+    double most = 0;
+    for (int i = 0; i < set.n; ++i) most = larger(most, abs(value(price_of(i))));
+    for (int r = 0; r < n; ++r) way[r] = T(value(set.load[r]));
+    // the programme is solved: its memory takes directions at right angles to one another that do not move
+    int held = 0;
+    for (int i = 0; i < set.n && held < n; ++i) {
+      T* own = tableau + held * n;
+      if (abs(value(price_of(i))) > round_off * most) continue;
+      for (int r = 0; r < n; ++r) own[r] = T(value(set.column[i * n + r]));
+      held += leaves_direction(own, held) ? 1 : 0;
     }
+    for (int again = 0; again < 2; ++again) {
+      for (int k = 0; k < held; ++k) {
+        double along = 0;
+        for (int r = 0; r < n; ++r) along += value(tableau[k * n + r] * way[r]);
+        for (int r = 0; r < n; ++r) way[r] -= T(along) * tableau[k * n + r];
+      }
+    }
+  }
+  /// How it moves member i.
+  double moves(const T* way, int i) const {
+    double sum = 0;
+    for (int r = 0; r < set.rank; ++r) sum += value(set.column[i * set.rank + r] * way[r]);
     return sum;
   }
-  /// Its sign: members with loads slip the way whose bound has a price, so that those of motion_of are positive where a
-  /// member slips backward.
-  int way_of_motion() const {
-    T work = T(0);
-    for (int f = 0; f < n_loads; ++f) work += price_of(follower[f]) * motion_of(follower[f]);
-    return value(work) < 0 ? -1 : 1;
+
+ private:
+  /// Whether a direction leaves something of length one behind those before it.
+  bool leaves_direction(T* own, int before) const {
+    constexpr double dependent = 1e-9;
+    const int n = set.rank;
+    auto length = [&] {
+      double square = 0;
+      for (int r = 0; r < n; ++r) square += value(own[r]) * value(own[r]);
+      return sqrt(square);
+    };
+    const double whole = length();
+    for (int again = 0; again < 2; ++again) {
+      for (int k = 0; k < before; ++k) {
+        double along = 0;
+        for (int r = 0; r < n; ++r) along += value(tableau[k * n + r] * own[r]);
+        for (int r = 0; r < n; ++r) own[r] -= T(along) * tableau[k * n + r];
+      }
+    }
+    const double left = length();
+    for (int r = 0; r < n && left > 0; ++r) own[r] = own[r] / T(left);
+    return left > dependent * whole;
   }
 };
 
@@ -174,7 +202,7 @@ int range_of(const LoadedLimit<T>& limit, int f) {
   return same ? 1 : none ? 0 : 2;
 }
 
-/// Most members with loads whose ranges are all tried; of more of them one after the other is changed.
+/// Most members with loads whose ranges are all tried; of more of them one after the other is changed, again and again.
 inline constexpr int most_tried = 5;
 
 /// The largest factor over all choices of lines; the solution is that of the best one. docs/theory/load-dependent.md
@@ -198,10 +226,19 @@ T solve_loaded(LoadedLimit<T>& limit) {
     for (int f = 0, rest = number; f < n; ++f, rest /= 3) choose_lines(limit, f, rest % 3, line);
     attempt();
   }
-  for (int f = 0; n > most_tried && f < 3 * n && value(most) < ample; ++f) {
-    for (int k = 0; k < 2 * n; ++k) line[k] = best[k];
-    choose_lines(limit, f / 3, f % 3, line);
+  // from all in one range, and from the best so far until none is better
+  for (int range = 0; n > most_tried && range < 3 && value(most) < ample; ++range) {
+    for (int f = 0; f < n; ++f) choose_lines(limit, f, range, line);
     attempt();
+  }
+  for (bool again = n > most_tried; again;) {
+    const double before = value(most);
+    for (int f = 0; f < 3 * n && value(most) < ample; ++f) {
+      for (int k = 0; k < 2 * n; ++k) line[k] = best[k];
+      choose_lines(limit, f / 3, f % 3, line);
+      attempt();
+    }
+    again = value(most) > before * (1 + 1e-9) && value(most) < ample;
   }
   for (int k = 0; k < 2 * n; ++k) line[k] = best[k];
   return limit.solve();

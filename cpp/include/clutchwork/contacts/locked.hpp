@@ -530,8 +530,10 @@ bool break_set(Workspace<T>& ws, int k, const T* carried, bool anyway) {
     LoadedLimit<T> limit = loaded_limit(ws, set, member, T(0));
     // with bounds as they are: where round-off widens them, it holds any multiple, and prices are round-off
     if (!(value(solve_loaded(limit)) < limit.most) && !anyway) return false;
-    const T way = T(limit.way_of_motion());
-    force([&](int i) { return limit.price_of(i); }, [&](int i) { return way * limit.motion_of(i); });
+    T* way = ws.set.deflection;
+    limit.find_motion(way);
+    auto motion = [&](int i) { return limit.moves(way, i); };
+    force(motion, motion);
     return true;
   }
   LimitLoad<T> limit = limit_of(ws, set);

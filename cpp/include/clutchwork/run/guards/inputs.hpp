@@ -19,10 +19,10 @@ bool rates_bend(const Workspace<T>& ws) {
 }
 
 /// Whether the ends of a step say little of what is held between them: where a capacity may bend before what was found,
-/// and where prescribed accelerations vary, of which drifts know nothing.
+/// where a load ends before them, and where prescribed accelerations vary, of which drifts know nothing.
 template <class T>
 [[gnu::noinline]] bool ends_say_little(const Workspace<T>& ws, const Hit& hit) {
-  return (ws.guard.n_bending > 0 && !hit.none()) || rates_bend(ws);
+  return (ws.guard.n_bending > 0 && !hit.none()) || hit.load_ends || rates_bend(ws);
 }
 
 /// Whether some inputs follow the state, so that they are known inside a step from its interpolant alone.

@@ -1,5 +1,6 @@
 #pragma once
 #include <clutchwork/components/pieces.hpp>
+#include <clutchwork/contacts/sticking.hpp>
 #include <clutchwork/motion/dynamics.hpp>
 #include <clutchwork/motion/mesh_loads.hpp>
 #include <clutchwork/run/event.hpp>
@@ -68,7 +69,7 @@ double line_crossing(Form& form, Step<Form>& step, const LineGuard& guard, doubl
 }
 
 /// Whether a cubic through values and slopes proves that branch k stays on its side of a level; its distances at both
-/// ends.
+/// ends. One that swings far beyond both of them proves nothing: a stiff motion may swing more than once.
 template <class T>
 CLUTCHWORK_INLINE Truth<T> stays_clear(const Workspace<T>& ws, int k, Real<T> sign, Real<T> level, Real<T> h,
                                        Real<T> noise, Real<T>& g0, Real<T>& g1) {
@@ -78,7 +79,7 @@ CLUTCHWORK_INLINE Truth<T> stays_clear(const Workspace<T>& ws, int k, Real<T> si
   const Real<T> shift = select(g0 < 0, smaller(-g0, 1e3 * noise), Real<T>(0));
   g0 += shift, g1 += shift;
   const Real<T> c0 = g0 + sign * h * value(e0.slope[k]) / 3, c1 = g1 - sign * h * value(e1.slope[k]) / 3;
-  return g1 >= 0 && c0 >= 0 && c1 >= 0;
+  return g1 >= 0 && c0 >= 0 && c1 >= 0 && c0 + c1 <= 4 * (g0 + g1);
 }
 
 /// Whether a rate stays where it is over the step, but for round-off of the torques: what is held rigidly at a kink.
@@ -90,6 +91,16 @@ bool idles(const Workspace<T>& ws, const LineGuard& guard, double h, double g0, 
   const double still = 1e-6 * ws.guard.zero + 1e-14 * h * torque_size(ws) * own;
   const double moves = h * larger(abs(value(e0.slope[guard.branch])), abs(value(e1.slope[guard.branch])));
   return larger(larger(abs(g0), abs(g1)), moves) <= still;
+}
+
+/// Whether a slip comes back at the instant at which it was let go, in a step that is too long to tell: what sets off
+/// without an acceleration is beside the error of such a step. docs/theory/events.md, rule 3
+template <class Form>
+bool returns_at_once(const Workspace<typename Form::Scalar>& ws, const LineGuard& guard, const Step<Form>& step,
+                     double s) {
+  constexpr double shortest = 1e-8;
+  if (guard.kind != LineGuard::slip || step.h <= shortest || s * step.h > 0.1 * shortest) return false;
+  return stands_since(ws, ws.contact.met_at[ws.branch[guard.branch].direction - int(ws.sys.elements)]);
 }
 
 /// A zero of a line guard beside transmissions, found at s on the interpolant, where the state on their ties has it: by
@@ -162,7 +173,7 @@ struct LineCrossing {
       if constexpr (Form::full) {
         if (ws.ratios.n > 0 && s > 0 && s < 1) s = crossing_on_ties(form, step, g, noise, s);
       }
-      if (hit.take(s, i)) hit.rough = rough;
+      if (hit.take(s, i)) hit.rough = rough || returns_at_once(ws, g, step, s);
     }
   }
   template <class Form, class T = typename Form::Scalar>

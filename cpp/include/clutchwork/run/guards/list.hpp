@@ -58,6 +58,18 @@ void watch_guards(Workspace<T>& ws) {
   });
 }
 
+/// What gives way before a load ends that was found: behind it, at the end of the step, less may have to be held.
+template <class Form>
+[[gnu::noinline]] void find_held(Form& form, Step<Form>& step, Hit& hit) {
+  GuardList::each([&](auto tag, int place) {
+    using G = typename decltype(tag)::type;
+    if constexpr (std::is_same_v<G, TorqueLimit> || std::is_same_v<G, SetLimit>) {
+      hit.asked = place;
+      if (G::watches(form.ws)) G::find(form, step, hit);
+    }
+  });
+}
+
 /// First guard that turns negative inside the step.
 template <class Form>
 CLUTCHWORK_INLINE Hit find_hit(Form& form, Step<Form>& step) {
@@ -69,6 +81,7 @@ CLUTCHWORK_INLINE Hit find_hit(Form& form, Step<Form>& step) {
     hit.asked = place;
     if (G::watches(form.ws)) G::find(form, step, hit);
   });
+  if (hit.load_ends && form.ws.held.n > 0) find_held(form, step, hit);
   return hit;
 }
 

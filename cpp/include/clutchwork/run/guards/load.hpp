@@ -28,6 +28,15 @@ struct LoadZero : OfContact {
   static bool watches(const Workspace<T>& ws) {
     return ws.guard.n_near > 0;
   }
+  /// Call f for each load that follows the motion and is zero.
+  template <class T, class F>
+  static void each_border(const Workspace<T>& ws, F&& f) {
+    for (int i = 0; i < ws.guard.n_loads; ++i) {
+      const int c = ws.guard.load[i];
+      const double still = load_at_rest(ws, c);
+      if (still > 0 && abs(value(load_of(ws, c))) <= still) f(c);
+    }
+  }
   template <class Form>
   [[gnu::noinline]] static void find(Form& form, Step<Form>& step, Hit& hit) {
     auto& ws = form.ws;
@@ -48,7 +57,7 @@ struct LoadZero : OfContact {
       // one that has died away with a speed or a state does not pass zero by round-off
       if (abs(l0 - noise) <= still && abs(l1 - noise) <= still) continue;
       const double s = first_crossing(f, l0, abs(l1) <= 1e-12 * abs(l0) ? 0.0 : l1, hit.s);
-      if (hit.take(s, c)) fit(form, step);
+      if (hit.take(s, c)) fit(form, step), hit.load_ends = true;
     }
   }
   template <class Form, class T = typename Form::Scalar>
