@@ -392,3 +392,41 @@ def test_a_sprag_clutch_whose_torque_ends_overruns_whatever_its_round_off(seed: 
     causes = runs.forward(runs.point(function.x0)).primal.events[:, AT["cause"]]
     assert len(causes)
     assert BY_NAME["fault"] not in causes
+
+
+def launch() -> tuple[cw.Driveline, str]:
+    """A turbine at stall, where the table of its converter begins."""
+    d = cw.Driveline("launch")
+    pump, turbine = d.shaft("pump", inertia=0.16, speed=190.0), d.shaft("first", inertia=0.12, speed=0.0)
+    table = {"speed_ratio": [0.0, 0.4, 0.7, 1.0], "torque_ratio": [2.0, 1.6, 1.2, 1.0]}
+    d.add(cw.TorqueConverter("tc", impeller=pump, turbine=turbine, capacity=[0.0035, 0.0034, 0.003, 0.0], **table))
+    return d, "first.speed"
+
+
+def shoes() -> tuple[cw.Driveline, str]:
+    """A centrifugal clutch at the speed at which its shoes leave their springs."""
+    d = cw.Driveline("shoes")
+    s, b = d.shaft("first", inertia=0.2, speed=100.0), d.shaft("b", inertia=0.3)
+    drum = {"mass": 0.1, "radius": 0.05, "drum_radius": 0.06, "onset": 100.0}
+    d.add(cw.CentrifugalClutch("e", base=s, follower=b, friction=cw.Coulomb(static=0.3, kinetic=0.25), **drum))
+    d.add(cw.Torque("t", shaft=s, torque=5.0))
+    return d, "first.speed"
+
+
+@pytest.mark.parametrize("begins", [launch, shoes])
+def test_what_is_asked_of_the_start_itself_has_sides_there(begins: Any) -> None:
+    """What the motion leaves at once moves no end of it, but an extreme at the start, and what is summed of jerks."""
+    model, by = begins()
+    of = [cw.peak("first.acceleration"), cw.squared_jerk("first"), "first.speed"]
+    sides = {side: cw.differentiable(model, 0.2, of=of, by=by, side=side, **TIGHT) for side in (None, "left", "right")}
+    f = sides[None]
+    both, tried = f.gradient(), 1e-4
+    assert np.isnan(both.matrix[:2, 0]).all()
+    assert "begins where it" in both.problems[0]
+    middle, above, below = f(f.x0), f(f.x0 + tried), f(f.x0 - tried)
+    for side, there in (("left", (middle - below) / tried), ("right", (above - middle) / tried)):
+        found = sides[side].gradient().matrix[:, 0]
+        known = np.isfinite(found)
+        assert known[[0, 2]].all()
+        # one-sided differences know as many digits
+        assert found[known] == pytest.approx(there[known], rel=1e-3, abs=1e-6)

@@ -154,3 +154,21 @@ def test_stops_that_are_struck_together_matter_only_where_their_order_does() -> 
         assert f.gradient().matrix[0, 0] == pytest.approx(difference[0], rel=1e-4), (joint, by)
     # alone it leaves the floor with a share of the speed that it came with
     assert f.gradient().matrix[0, 0] == pytest.approx(WEIGHT / MASS * fall, rel=1e-7)
+
+
+def test_a_lag_has_a_derivative_unless_it_is_zero() -> None:
+    """Of zero it leaves out a state."""
+
+    def turbine(lag: float) -> cw.Driveline:
+        d = cw.Driveline("converter")
+        pump, turbine = d.shaft("pump", inertia=0.16, speed=190.0), d.shaft("turbine", inertia=0.12, speed=10.0)
+        table = {"speed_ratio": [0.0, 0.4, 0.7, 1.0], "torque_ratio": [2.0, 1.6, 1.2, 1.0]}
+        curve = [0.0035, 0.0034, 0.003, 0.0]
+        d.add(cw.TorqueConverter("tc", impeller=pump, turbine=turbine, capacity=curve, lag=lag, **table))
+        return d
+
+    with pytest.raises(cw.UseError, match=r"tc\.lag is 0, and a little more of it is a state more"):
+        cw.differentiable(turbine(0.0), 0.1, of="turbine.speed", by="tc.lag")
+    function = cw.differentiable(turbine(0.05), 0.1, of="turbine.speed", by="tc.lag", rtol=1e-10, atol=1e-12)
+    around = function(function.x0 + 1e-4) - function(function.x0 - 1e-4)
+    assert function.jacobian(function.x0)[0] == pytest.approx(around / 2e-4, rel=1e-5)

@@ -86,3 +86,44 @@ def test_a_slip_that_others_stop_and_let_go_has_not_passed_zero(speed: float, cl
     found = cw.differentiable(d, 0.7, of="s.speed", by="c.gain").gradient().matrix[0, 0]
     # a coefficient of nearly 0.08 over 0.3 s
     assert found == pytest.approx(-np.sign(torque) * 0.09 * 1e4 * 0.3 / 2.0, rel=0.3)
+
+
+def locking(law: cw.Law) -> cw.Driveline:
+    """Two discs that a clutch brings to one speed."""
+    d = cw.Driveline("locking")
+    a, b = d.shaft("a", inertia=0.3, speed=20.0), d.shaft("b", inertia=0.5)
+    d.add(cw.Clutch("c", base=a, follower=b, friction=law, gain=5e-4, pressure=5e5))
+    return d
+
+
+@pytest.mark.parametrize("rtol", [1e-6, 1e-8, 1e-10])
+def test_a_torque_whose_slope_no_polynomial_follows_is_noted(rtol: float) -> None:
+    """The largest torque of a clutch that locks is what it holds statically, but for a power of its slip."""
+    law = cw.Stribeck(static=0.18, kinetic=0.14, speed=6.0, shape="power", exponent=1.5)
+    function = cw.differentiable(locking(law), 0.6, of=cw.peak("c.torque"), by="c.gain", rtol=rtol, atol=rtol / 100)
+    gradient = function.gradient()
+    assert gradient.matrix[0, 0] == pytest.approx(5e5 * 0.18, rel=1e-3)
+    assert any("fewer digits" in note for note in gradient.notes)
+
+
+@pytest.mark.parametrize("rtol", [1e-6, 1e-7, 1e-8])
+def test_extremes_where_bristles_turn_are_noted(rtol: float) -> None:
+    """Their rates have another slope on both sides of a slip of zero, at which no step ends."""
+    law = cw.LuGre(static=0.18, kinetic=0.14, speed=6.0, stiffness=2.0, damping=0.0)
+    of = [cw.peak("b.acceleration"), cw.squared_jerk("b"), "b.speed"]
+    gradients = [
+        cw.differentiable(locking(law), 0.6, of=of, by="c.gain", rtol=rtol, atol=rtol / 100).gradient()
+        for rtol in (rtol, 1e-11)
+    ]
+    assert [name in " ".join(gradients[0].notes) for name in ("peak(b.acc", "squared_jerk(b)", "b.speed:")] == [
+        True,
+        True,
+        False,
+    ]
+    assert gradients[0].matrix[0, 0] == pytest.approx(151330.51, rel=3e-4)
+
+
+def test_extremes_far_from_where_bristles_turn_are_not() -> None:
+    law = cw.LuGre(static=0.18, kinetic=0.14, speed=6.0, stiffness=2.0, damping=0.0)
+    function = cw.differentiable(locking(law), 0.05, of=cw.peak("b.acceleration"), by="c.gain", rtol=1e-8, atol=1e-10)
+    assert function.gradient().notes == ()

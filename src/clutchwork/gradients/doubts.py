@@ -19,6 +19,7 @@ from clutchwork.base.classes import dataclass
 from clutchwork.gradients.beginning import at_border, at_rest, at_zero
 from clutchwork.gradients.contact_at_rest import unpressed
 from clutchwork.gradients.grazing import (
+    begins_unloaded,
     crowded,
     decided_at_knots,
     jumping_together,
@@ -150,11 +151,15 @@ class Doubts:
     def _decisions(self) -> Iterator[Doubt]:
         primal, system, contacts = self.run.primal, self.runs.task.system, self.runs.wanted.contacts
         knots, sizes = times_of(self.point.chart, self.point.words, primal.t_end), self.point.sizes
-        inside = knots[bisect_right(knots, self.runs.wanted.begin) :]
-        apart = moving_apart(system, primal.grazes, primal.decided, self.runs.wanted.begin, sizes)
+        begin = self.runs.wanted.begin
+        inside = knots[bisect_right(knots, begin) :]
+        apart = moving_apart(system, primal.grazes, primal.decided, begin, sizes)
         for time, why in chain(refused(system, primal.decided), apart):
-            width = BEHIND_THE_START if time <= self.runs.wanted.begin * (1.0 + SAME) else 1.0
-            yield Doubt(why, self._up_to(time), self._all, width=width)
+            yield Doubt(why, self._up_to(time), self._all)
+            if abs(time - begin) <= SAME * (1.0 + abs(begin)):
+                yield from self._of_start(why)
+        for why in begins_unloaded(system, primal.grazes, sizes):
+            yield from self._of_start(why)
         for time, why in jumping_together(system, primal.grazes, sizes):
             yield Doubt(why, self._up_to(time), self._moving_knots())
         found = chain(
@@ -164,6 +169,12 @@ class Doubts:
         )
         for time, why in found:
             yield Doubt(why, self._up_to(time), self._all)
+
+    def _of_start(self, why: str) -> Iterator[Doubt]:
+        """What leaves a border at once shows in what is asked of the start itself, seen from far enough."""
+        feels = np.array([line.feels_start for line in self.lines])
+        if feels.any():
+            yield Doubt(why, feels, self._all, width=BEHIND_THE_START)
 
     def _start(self) -> Iterator[Doubt]:
         chart, words = self.point.chart, self.point.words

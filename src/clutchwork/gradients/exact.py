@@ -10,7 +10,7 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
-from clutchwork.assembly.wiring import wiring
+from clutchwork.assembly.wiring import HOUSING, wiring
 from clutchwork.base.classes import dataclass
 from clutchwork.base.errors import ModelError
 from clutchwork.gradients.bends import Bends, bends_of, spread
@@ -44,7 +44,7 @@ APART = 1e-3
 BY_TOLERANCE = 100.0
 # a run is followed back from so many numbers on, and from so many more for each result
 FOLLOWED_FROM, FOLLOWED_FOR_EACH = 12, 4
-STILL_ROUGH = "its derivatives follow an instant that moves, at which rates cancel, and have fewer digits than the run"
+STILL_ROUGH = "its derivatives follow a bend or an instant at which rates cancel, and have fewer digits than the run"
 
 
 @dataclass(frozen=True, eq=False)
@@ -66,7 +66,12 @@ class Exact:
         wanted = self.runs.wanted
         kept = {one.name: wanted.kept_as(one) for one in wanted.outputs.values() if isinstance(one, Integral)}
         allowed = max(UNKNOWN, BY_TOLERANCE * self.task.options.rtol)
-        return Context(wanted.contacts, kept, wanted.begin, massless(self.task.system), allowed)
+        system = self.task.system
+        known = wiring(system)
+        laws = ((one.direction, one.component.friction) for one in (*known.contacts, *known.elements))
+        slips = (ways for ways, law in laws if law is not None and law.own_states())
+        bristles = tuple({node: share for node, share in ways.items() if node != HOUSING} for ways in slips)
+        return Context(wanted.contacts, kept, wanted.begin, massless(system), bristles, allowed)
 
     @cached_property
     def _tighter(self) -> Exact | None:
@@ -263,7 +268,8 @@ class Exact:
     def _nearer(self, here: Line, there: Line, sizes: Array) -> Line:
         """The better one of a line and that of a tighter run; near round-off a tighter run knows no more."""
         if not here.rough:
-            return here
+            bent = there._replace(value=here.value, is_bent=True, rough=False)
+            return bent if here.is_bent and not there.is_open else here
         if there.is_open:
             return there._replace(value=here.value)
         is_better = bool(here.several) or there.missed < here.missed
@@ -274,8 +280,8 @@ class Exact:
         return best.opened(np.abs(here.left - there.left) * sizes > APART * size)
 
     def _repeats(self, one: Line) -> bool:
-        """Whether a tighter run is asked for its derivatives; equal extremes are looked at once more alone."""
-        return one.rough and not (self.again and one.several)
+        """Whether a tighter run is asked for derivatives; equal extremes and bends are looked at once more alone."""
+        return (one.rough and not (self.again and one.several)) or (one.is_bent and not self.again)
 
     def _lines(self, point: RunPoint) -> tuple[Run, list[Line]]:
         run, outputs = self._run(point, len(self.task.labels)), self.task.outputs

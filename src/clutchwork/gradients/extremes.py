@@ -292,7 +292,9 @@ def add_extreme(primal: Primal, one: Extreme, found: Located, into: Functional) 
             add_shift(primal, int(end or 0), 1.0, moves)
             # in a short step the slope has what rows are off by, too, and where it is bent what the polynomial misses
             off = primal.rtol * float(np.abs(values).max()) + _next_coefficient(steps.basis[found.step] @ values)
-            return moves, abs(rate) * missed(primal, found.step, at_end=found.share == 1.0) + off / steps.length[found.step]
+            return moves, abs(rate) * missed(primal, found.step, at_end=found.share == 1.0) + off / steps.length[
+                found.step
+            ]
         if jumps(primal, one.signal, int(end or 0)):
             add_turn(primal, one.signal, int(end or 0), sign * rate, into)
     return None

@@ -40,7 +40,7 @@ CROWD, CROWDED = 6, 1e-4
 BY_NAME = {name: number for number, (name, _) in CAUSES.items()}
 BORDERS = ("line", "law", "process", "flip")
 # at these something may stay, though nothing moves with them
-STAYS = ("multiplier", "set", "bend", "load")
+STAYS = ("multiplier", "set", "bend")
 # kind of a jump of a torque that no guard sees
 UNSEEN = 1000
 ASK = "; ask for one side of it"
@@ -64,6 +64,12 @@ def borders() -> tuple[int, ...]:
 def loads() -> tuple[int, ...]:
     """Numbers in the core of the guards of loads that follow torques."""
     return tuple(number for number, (name, _) in enumerate(derivatives().guards) if name == "flip")
+
+
+@cache
+def contact_loads() -> tuple[int, ...]:
+    """Numbers in the core of the guards of loads that press contacts."""
+    return tuple(number for number, (name, _) in enumerate(derivatives().guards) if name == "load")
 
 
 @cache
@@ -162,6 +168,17 @@ def moving_apart(
         else:
             what = f"two events at {time:.9g} s, of which {name} is one, move apart with the numbers; separate them"
             yield time, what
+
+
+def begins_unloaded(system: System, grazes: Array, sizes: Array) -> Iterator[str]:
+    """Contacts whose load follows the motion and begins at zero: what is asked of the start itself has two sides.
+
+    Parameters: sizes of the numbers.
+    """
+    for graze in grazes.tolist():
+        if graze[KIND] in contact_loads() and graze[INDEX] == np.inf and graze[DIFFERENCE] * sizes.max() > APART:
+            name = component(system, int(graze[COMPONENT]), int(graze[KIND]))
+            yield f"{name} begins where its load begins or ends; move a start value, or what makes that load"
 
 
 def jumping_together(system: System, grazes: Array, sizes: Array) -> Iterator[tuple[float, str]]:

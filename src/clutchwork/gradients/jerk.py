@@ -19,6 +19,7 @@ if TYPE_CHECKING:
     from clutchwork.assembly.system import System
 
 Array = NDArray[np.float64]
+Places = NDArray[np.intp]
 
 # jumps of accelerations, and of their slopes, that are more than what polynomials miss: of the larger side
 JUMP, BEND = 1e-6, 1e-4
@@ -53,6 +54,15 @@ def seen(steps: Steps, acceleration: Array) -> float:
     """What the rows of the steps say of its value: steps too short for runs with derivatives have none."""
     varying = _varying(acceleration)
     return float(np.einsum("nij,ni,nj->", steps.squared_slope, varying, varying))
+
+
+def bends_in(steps: Steps, acceleration: Array, turning: Places) -> float:
+    """By how much bends inside of steps would change it, which moved by as much as they are behind the start."""
+    if not len(turning):
+        return 0.0
+    before, behind = _limits(steps, acceleration)
+    jumps = np.abs(before[turning] ** 2 - behind[turning + 1] ** 2)
+    return float(jumps @ (steps.begin[turning] - steps.begin[0]))
 
 
 def missed(primal: Primal, signal: str, acceleration: Array, *, is_massless: bool) -> list[tuple[Functional, float]]:

@@ -27,9 +27,14 @@ from clutchwork.sweeps.outputs import (
 )
 
 Array = NDArray[np.float64]
+Places = NDArray[np.intp]
 
 # an extreme in short steps is another one where it is so much more, of the size of the signal
 SHORT = 1e-6
+# of the time of the run: an extreme is where bristles turn
+NEAR = 1e-4
+# by so much of a squared jerk bristles that turn may move it
+BENT = 1e-5
 AT = {name: column for column, (name, _) in enumerate(EVENT)}
 
 
@@ -49,6 +54,8 @@ class Measure(NamedTuple):
     unseen: float = 0.0  # share of a squared jerk that is not in the rows of the steps
     is_unseen: bool = False  # an extreme that is not in them
     is_held: bool = False  # the lock-up of a contact that is locked all the while
+    feels_start: bool = False  # whether it has a share of accelerations and torques at the very start
+    is_bent: bool = False  # whether it looks at a step in which bristles turn, as no event does
 
 
 class Context(NamedTuple):
@@ -58,6 +65,7 @@ class Context(NamedTuple):
     kept_as: Mapping[str, str]  # integrals by name -> signal
     begin: float  # s
     massless: frozenset[str] = frozenset()  # accelerations of shafts without inertia
+    bristles: tuple[Mapping[int, float], ...] = ()  # slips of contacts whose laws have them: shares of shafts
     # of the value: what may be missed of a derivative, for a number that changes by all of itself
     unknown: float = 1e-6
 
@@ -74,17 +82,18 @@ def measures(primal: Primal, one: Output, asked: Context) -> Iterator[Measure]:
         case When():
             yield _when(primal, one, asked)
         case Extreme():
-            yield _extreme(primal, one)
+            yield _extreme(primal, one, asked.bristles)
         case FeltJerk():
             yield _felt(primal, one, asked.begin)
         case SquaredJerk():
-            yield _jerk(primal, one, one.signal in asked.massless)
+            yield _jerk(primal, one, asked)
 
 
 def _at(primal: Primal, signal: str, time: float) -> Measure:
     into, row = primal.functional(), np.array([primal.row(time)])
     add_signal(primal, signal, row, np.ones(1), into)
-    return Measure(float(signal_at(primal, signal, row)[0]), (into,), time, at=time)
+    starts = bool(row[0] == 0)
+    return Measure(float(signal_at(primal, signal, row)[0]), (into,), time, at=time, feels_start=starts)
 
 
 def _change(primal: Primal, signal: str, begin: float) -> Measure:
@@ -122,7 +131,24 @@ def _is_held(primal: Primal, one: When, contact: int) -> bool:
     return one.kind == "lock" and not changes and bool(np.all(modes[-1:] == LOCKED))
 
 
-def _extreme(primal: Primal, one: Extreme) -> Measure:
+def _turning(primal: Primal, bristles: tuple[Mapping[int, float], ...]) -> NDArray[np.bool_]:
+    """Steps inside of which a slip with bristles changes its sign: no event ends them there."""
+    found, first = np.zeros(len(primal.steps), dtype=bool), primal.columns["speed"].start
+    for shares in bristles:
+        speeds = primal.rows[primal.steps.rows[:, :, None], first + np.array([*shares], dtype=np.intp)]
+        slip = speeds @ np.array([*shares.values()])
+        found |= slip.min(axis=1) * slip.max(axis=1) < 0.0
+    return found
+
+
+def _is_near(primal: Primal, when: tuple[float, ...], turning: Places) -> bool:
+    """Whether bristles turn about when an extreme is: many short steps may lie in between."""
+    steps, room = primal.steps, NEAR * (primal.t_end - float(primal.times[0]))
+    apart = np.maximum(steps.begin[turning] - np.array(when)[:, None], np.array(when)[:, None] - steps.end[turning])
+    return bool(np.any(apart <= room))
+
+
+def _extreme(primal: Primal, one: Extreme, bristles: tuple[Mapping[int, float], ...]) -> Measure:
     steps, values = primal.steps, signal_at(primal, one.signal, primal.steps.rows)
     found = extremes.apart(primal, extremes.candidates(one, steps, values))
     changes = [primal.functional() for _ in found]
@@ -138,6 +164,8 @@ def _extreme(primal: Primal, one: Extreme) -> Measure:
         size=size,
         is_least=one.kind == "minimum",
         missed=tuple(lost for lost in missed if lost is not None),
+        feels_start=min(when, default=primal.t_end) <= primal.times[0],
+        is_bent=_is_near(primal, when, np.flatnonzero(_turning(primal, bristles))),
         is_unseen=bool(np.isfinite(whole)) and not abs(whole - located) <= SHORT * size,
     )
 
@@ -155,11 +183,19 @@ def _felt(primal: Primal, one: FeltJerk, begin: float) -> Measure:
     return Measure(float(abs(jerks[place])), (into,), float(times[place + 2 * PER_WINDOW]))
 
 
-def _jerk(primal: Primal, one: SquaredJerk, is_massless: bool) -> Measure:
+def _jerk(primal: Primal, one: SquaredJerk, asked: Context) -> Measure:
     into, acceleration = primal.functional(), signal_at(primal, one.signal, primal.steps.rows)
     jerk.add_jerk(primal, one.signal, acceleration, into)
-    missed = tuple(jerk.missed(primal, one.signal, acceleration, is_massless=is_massless))
-    kinks = jerk.kinks(primal, acceleration)
-    value = primal.by_rows[one]
-    unseen = abs(value - jerk.seen(primal.steps, acceleration)) / max(value, 1e-291)
-    return Measure(value, (into,), primal.t_end, kinks=kinks, missed=missed, is_massless=is_massless, unseen=unseen)
+    is_massless, value = one.signal in asked.massless, primal.by_rows[one]
+    bends = jerk.bends_in(primal.steps, acceleration, np.flatnonzero(_turning(primal, asked.bristles)))
+    return Measure(
+        value=value,
+        changes=(into,),
+        until=primal.t_end,
+        kinks=jerk.kinks(primal, acceleration),
+        missed=tuple(jerk.missed(primal, one.signal, acceleration, is_massless=is_massless)),
+        is_massless=is_massless,
+        unseen=abs(value - jerk.seen(primal.steps, acceleration)) / max(value, 1e-291),
+        feels_start=True,
+        is_bent=bends > BENT * value,
+    )

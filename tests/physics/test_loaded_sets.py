@@ -1,0 +1,114 @@
+"""Sets of locked contacts of which some follow loads: how they give way."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+import clutchwork as cw
+
+DRY = cw.Coulomb(static=0.3, kinetic=0.3)
+WORM = {"ratio": 6.889, "lead_angle": 0.163, "friction_coefficient": 0.0918}
+
+
+def wedge() -> cw.Driveline:
+    """A gear that locks itself backward before a lossy one, and torques that draw both backward."""
+    d = cw.Driveline("wedge")
+    s1, s0, s2 = (d.shaft(name, inertia=inertia) for name, inertia in (("s1", 0.2), ("s0", 0.01), ("s2", 2.0)))
+    d.add(cw.LossyGear("e1", input=s1, output=s0, ratio=0.2, efficiency=0.95, backward_efficiency=-0.2))
+    d.add(cw.LossyGear("e2", input=s0, output=s2, ratio=0.25, efficiency=0.85))
+    d.add(cw.Torque("load", shaft=s2, torque=-53.0))
+    d.add(cw.Torque("drive", shaft=s1, torque=cw.Ramp(height=-400.0, duration=1.0)))
+    return d
+
+
+def axle(rng: np.random.Generator | None = None) -> cw.Driveline:
+    """A worm and a limited slip between brakes, of which the first opens: with given or with random numbers."""
+    given = {"preload": 0.0, "share": 0.368, "press": 3.604e5, "torque": -437.7, "gain": 1.02e-4}
+    if rng is not None:
+        low, high = np.array([0.0, 0.05, 1e5, -500.0, 1e-4]), np.array([40.0, 0.4, 1e6, 500.0, 1e-3])
+        given = dict(zip(given, rng.uniform(low, high).tolist(), strict=True))
+    d = cw.Driveline("axle")
+    s1, s3, s4, s5 = (
+        d.shaft(name, inertia=inertia) for name, inertia in (("s1", 0.08), ("s3", 1.3), ("s4", 0.1), ("s5", 0.5))
+    )
+    d.add(cw.WormGear("g", worm=s1, wheel=s4, **WORM))
+    opens = cw.Ramp(height=-1e6, duration=1.0, offset=1e6)
+    d.add(cw.Brake("b1", shaft=s1, friction=DRY, gain=given["gain"], pressure=opens))
+    d.add(cw.Differential("e6", carrier=s4, left=s3, right=s5, share=given["share"], preload=given["preload"]))
+    d.add(cw.Brake("b5", shaft=s5, friction=DRY, gain=0.001, pressure=given["press"]))
+    d.add(cw.Torque("t3", shaft=s3, torque=given["torque"]))
+    return d
+
+
+def test_a_wedge_gives_way_as_the_load_draws_it() -> None:
+    """What holds it best are torques within it that would let its gears go in two ways."""
+    run = wedge().simulate(1.0)
+    assert run.status == "done"
+    assert [(one.element, one.after) for one in run.events] == [("e1", "backward"), ("e2", "backward")]
+    # backward the first gear drives the second one, and the load helps: the balances of three shafts
+    drive = -400.0 * run.events[0].time
+    acceleration = (0.19 * drive - 53.0 / 0.2125) / (0.01 + 8.0 / 0.2125 + 0.19 * 0.04)
+    assert run.events[1].slip_acceleration == pytest.approx(acceleration, rel=1e-6)
+    assert run.events[0].slip_acceleration == pytest.approx(0.2 * acceleration, rel=1e-6)
+
+
+def test_a_member_that_holds_on_does_not_move() -> None:
+    """The brake behind the differential holds more than it is asked for, the others give way together."""
+    run = axle().simulate(0.1)
+    assert run.status == "done"
+    assert {(one.element, one.after) for one in run.events} == {
+        ("b1", "backward"),
+        ("g", "backward"),
+        ("e6", "backward"),
+    }
+    # the carrier takes what both sides get, of which the limited slip makes one more
+    carrier = 437.7 / (0.5 * (1.0 + 2.0 * 0.368))
+    first = run.events[0].time
+    before = run.at([first * (1.0 - 1e-9)])
+    assert before["b5.torque"][0] == pytest.approx(-(carrier - 437.7), rel=1e-6)
+    assert before["b1.torque"][0] == pytest.approx(0.3 * 1.02e-4 * (1e6 - 1e6 * first), rel=1e-6)
+
+
+@pytest.mark.parametrize("seed", range(40))
+def test_members_slip_against_their_torques(seed: int) -> None:
+    run = axle(np.random.default_rng([seed, 27])).simulate(1.0)
+    assert run.status == "done"
+    for one in run.events:
+        if (one.before, one.cause) == ("locked", "torque limit"):
+            way = 1.0 if one.after == "forward" else -1.0
+            assert way * one.torque_before <= 1e-6 * (1.0 + abs(one.torque_before)), one
+
+
+def tie_up() -> cw.Driveline:
+    """A box at rest whose brakes change over, on a hill: seven of its contacts follow loads."""
+    d = cw.Driveline("tie-up of an 8HP70 at rest")
+    s0, s1, s2 = (d.shaft(name, inertia=inertia) for name, inertia in (("s0", 0.08), ("s1", 0.2), ("s2", 1.3)))
+    s3, s4, m5 = d.shaft("s3"), d.shaft("s4", inertia=0.5), d.mass("m5", mass=1163.0)
+    d.add(cw.Torque("e1", shaft=s0, torque=-15.76))
+    d.add(cw.BearingFriction("e2", shaft=s0, friction=cw.Coulomb(static=1.0, kinetic=0.8), torque=17.05))
+    shift = {
+        "A": {"pressure": cw.Ramp(height=-1e6, duration=0.1794, start=0.407, offset=1e6)},
+        "B": {"pressure": cw.Ramp(height=-1e6, duration=0.1234, start=0.1078, offset=1e6)},
+        "D": {"pressure": cw.Ramp(height=1e6, duration=0.08871, start=0.1493)},
+        "E": {"pressure": cw.Ramp(height=1e6, duration=0.2507, start=0.09394)},
+    }
+    box = {"gearbox": "zf-8hp70", "gear": "1", "torque": 192.5, "inertia": 0.018, "shift": shift, "efficiency": 0.9732}
+    d.add(cw.Transmission("e3", input=s0, output=s1, **box))
+    d.add(cw.LossyGear("e4", input=s1, output=s3, ratio=3.572, efficiency=0.912))
+    d.add(cw.Differential("e5", carrier=s3, left=s2, right=s4, share=0.2854))
+    pads = cw.Stribeck(static=0.2721, kinetic=0.2267, speed=0.04511)
+    d.add(cw.Brake("e6", shaft=s4, friction=pads, gain=0.001, pressure=9.098e5))
+    tyre = cw.Coulomb(static=0.9585, kinetic=0.4632)
+    d.add(cw.RollingContact("e7", shaft=s2, mass=m5, friction=tyre, radius=0.3, load=3506.0))
+    d.add(cw.Vehicle("e8", mass=m5, slope=-0.1449))
+    return d
+
+
+def test_many_members_that_follow_loads_hold_what_they_can() -> None:
+    """With six of them and more not all lines of their bounds are tried: those that are found must not be poor ones."""
+    run = tie_up().simulate(0.26)
+    assert run.status == "done"
+    held = run["e2.state"] == "locked"
+    assert held.any()
+    assert np.all(np.abs(run["e2.torque"][held]) <= run["e2.capacity"][held] * (1.0 + 1e-6))
