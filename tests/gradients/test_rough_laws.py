@@ -127,3 +127,14 @@ def test_extremes_far_from_where_bristles_turn_are_not() -> None:
     law = cw.LuGre(static=0.18, kinetic=0.14, speed=6.0, stiffness=2.0, damping=0.0)
     function = cw.differentiable(locking(law), 0.05, of=cw.peak("b.acceleration"), by="c.gain", rtol=1e-8, atol=1e-10)
     assert function.gradient().notes == ()
+
+
+@pytest.mark.parametrize("rtol", [1e-9, 1e-11])
+def test_a_jerk_without_bound_has_no_derivative_that_is_known(rtol: float) -> None:
+    """Towards rest the jerk of a power below one grows without bound: runs of two tolerances may agree by chance."""
+    d = cw.Driveline("brake")
+    a = d.shaft("a", inertia=0.2, speed=50.0)
+    law = cw.Stribeck(static=0.11, kinetic=0.1, speed=20.0, shape="power", exponent=0.9)
+    d.add(cw.Brake("c", shaft=a, friction=law, gain=5e-4, pressure=2e5))
+    function = cw.differentiable(d, 2.0, of=[cw.squared_jerk("a"), "a.angle"], by="c.gain", rtol=rtol, atol=rtol / 100)
+    assert np.isnan(function.gradient().matrix[0, 0])

@@ -130,7 +130,8 @@ def test_a_slip_that_begins_at_zero_turns_within_nanoseconds(much):
     # it is the largest where the slip turns, behind h / (grip (1 / inertia + 1) + drive / inertia), at -grip so long
     rate = grip * (1.0 / inertia + 1.0) + drive / inertia
     assert found["right"].matrix[0, 0] == pytest.approx(0.0, abs=1e-6)
-    assert found["left"].matrix[0, 0] == pytest.approx(-2.0 * grip / rate, rel=1e-5)
+    # the side is looked at where it lasts for some nanoseconds, whose rates have as many digits
+    assert found["left"].matrix[0, 0] == pytest.approx(-2.0 * grip / rate, rel=5e-5)
 
 
 def test_a_jerk_of_what_slips_backward_for_a_moment():

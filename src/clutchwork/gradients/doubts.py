@@ -37,8 +37,8 @@ Mask = NDArray[np.bool_]
 
 # arrays without which no number changes how a run starts, and which loads press
 STARTS = ("segment_coef", "contact_rate_value", "initial_speed", "initial_state")
-# what lasts less than some nanoseconds is not seen: so many steps beside zero a slip starts, and a state
-LET_GO, BEHIND_THE_START = 1e2, 1e3
+# what lasts less than some nanoseconds is not seen: so many steps beside zero a slip starts, a border, and a state
+LET_GO, AT_THE_START, BEHIND_THE_START = 1e2, 3e2, 1e3
 
 
 class Doubt(NamedTuple):
@@ -174,7 +174,7 @@ class Doubts:
         """What leaves a border at once shows in what is asked of the start itself, seen from far enough."""
         feels = np.array([line.feels_start for line in self.lines])
         if feels.any():
-            yield Doubt(why, feels, self._all, width=BEHIND_THE_START)
+            yield Doubt(why, feels, self._all, width=AT_THE_START)
 
     def _start(self) -> Iterator[Doubt]:
         chart, words = self.point.chart, self.point.words

@@ -10,10 +10,11 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
-from clutchwork.assembly.wiring import HOUSING, wiring
+from clutchwork.assembly.wiring import wiring
 from clutchwork.base.classes import dataclass
 from clutchwork.base.errors import ModelError
 from clutchwork.gradients.bends import Bends, bends_of, spread
+from clutchwork.gradients.bent_slips import of_bristles, of_powers
 from clutchwork.gradients.doubts import Doubt, Doubts
 from clutchwork.gradients.grazing import noted, passed_unseen, together
 from clutchwork.gradients.jerk import massless
@@ -40,6 +41,8 @@ TIGHTER, LEAST = 1e-2, 1e-12
 FAR_APART = 10.0
 # what the tightest two runs may differ by on a rough derivative, of the value over the number
 APART = 1e-3
+# what may be missed of a squared jerk that is still rough, of its value
+MUCH = 1e-2
 # a derivative may miss so much of the relative tolerance of a run
 BY_TOLERANCE = 100.0
 # a run is followed back from so many numbers on, and from so many more for each result
@@ -67,11 +70,8 @@ class Exact:
         kept = {one.name: wanted.kept_as(one) for one in wanted.outputs.values() if isinstance(one, Integral)}
         allowed = max(UNKNOWN, BY_TOLERANCE * self.task.options.rtol)
         system = self.task.system
-        known = wiring(system)
-        laws = ((one.direction, one.component.friction) for one in (*known.contacts, *known.elements))
-        slips = (ways for ways, law in laws if law is not None and law.own_states())
-        bristles = tuple({node: share for node, share in ways.items() if node != HOUSING} for ways in slips)
-        return Context(wanted.contacts, kept, wanted.begin, massless(system), bristles, allowed)
+        bends = of_bristles(system), of_powers(system)
+        return Context(wanted.contacts, kept, wanted.begin, massless(system), *bends, allowed)
 
     @cached_property
     def _tighter(self) -> Exact | None:
@@ -257,13 +257,19 @@ class Exact:
     def lines(self, point: RunPoint) -> tuple[Run, list[Line]]:
         """A run, and its requested outputs with plain derivatives; those that are rough are of a tighter run."""
         run, found = self._lines(point)
-        if self._tighter is None or not any(self._repeats(one) for one in found):
-            return run, found
-        try:
-            nearer = self._tighter.lines(self._tighter.runs.point(point.x))[1]
-        except NoGradient:
-            return run, found
-        return run, [self._nearer(here, there, point.sizes) for here, there in zip(found, nearer, strict=True)]
+        if self._tighter is not None and any(self._repeats(one) for one in found):
+            try:
+                nearer = self._tighter.lines(self._tighter.runs.point(point.x))[1]
+            except NoGradient:
+                return run, found
+            found = [self._nearer(here, there, point.sizes) for here, there in zip(found, nearer, strict=True)]
+        return run, found if self.again else [self._as_known(one) for one in found]
+
+    @staticmethod
+    def _as_known(one: Line) -> Line:
+        """A squared jerk without derivatives of which too much is missed, however tight the run."""
+        is_lost = one.is_sum and one.rough and not one.several and one.missed > MUCH
+        return one.opened(one.left != 0.0) if is_lost else one
 
     def _nearer(self, here: Line, there: Line, sizes: Array) -> Line:
         """The better one of a line and that of a tighter run; near round-off a tighter run knows no more."""

@@ -290,20 +290,12 @@ def add_extreme(primal: Primal, one: Extreme, found: Located, into: Functional) 
             add_shift(primal, int(end or 0), sign * rate, into)
             moves = primal.functional()
             add_shift(primal, int(end or 0), 1.0, moves)
-            # in a short step the slope has what rows are off by, too, and where it is bent what the polynomial misses
-            off = primal.rtol * float(np.abs(values).max()) + _next_coefficient(steps.basis[found.step] @ values)
-            return moves, abs(rate) * missed(primal, found.step, at_end=found.share == 1.0) + off / steps.length[
-                found.step
-            ]
+            # in a short step the slope has what rows are off by, too
+            off = primal.rtol * float(np.abs(values).max()) / float(steps.length[found.step])
+            return moves, abs(rate) * missed(primal, found.step, at_end=found.share == 1.0) + off
         if jumps(primal, one.signal, int(end or 0)):
             add_turn(primal, one.signal, int(end or 0), sign * rate, into)
     return None
-
-
-def _next_coefficient(coefficients: Array) -> float:
-    """What the first coefficient that a polynomial leaves out is like, by the last two that it has."""
-    last, before = float(abs(coefficients[-1])), float(abs(coefficients[-2]))
-    return last * last / max(last, before, 1e-300)
 
 
 def _rows_of(primal: Primal, one: Extreme, first: int, last: int) -> Array:

@@ -52,6 +52,7 @@ class Line(NamedTuple):
     rough: bool = False  # whether a run of a tighter tolerance knows its derivatives better
     missed: float = 0.0  # the most that is not known of one of them, of the value
     feels_start: bool = False  # whether it has a share of what is at the very start
+    is_sum: bool = False  # whether it is a squared jerk
     is_bent: bool = False  # whether it looks at a bend that no event tells
     is_open: bool = False  # whether runs of two tolerances do not agree on it, of a value that is rough at both
 
@@ -142,7 +143,7 @@ def _line(run: Run, name: str, one: Measure, sizes: Array, allowed: float) -> Li
     rough = bool(why) or bool(np.any(lost > allowed))
     most_missed = max(float(lost.max(initial=0.0)), run.primal.rtol if one.is_bent else 0.0)
     made = Line(name, one.value, size, left, right, one.until, one.at, columns, one.kinks, "", why, rough, most_missed)
-    return made._replace(feels_start=one.feels_start, is_bent=one.is_bent)
+    return made._replace(feels_start=one.feels_start, is_sum=one.is_sum, is_bent=one.is_bent)
 
 
 def unknown(run: Run, one: Measure, sizes: Array) -> Array:

@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 
 from clutchwork.declare.layout import EVENT
 from clutchwork.gradients import extremes, jerk
+from clutchwork.gradients.bent_slips import Shares, resting, turning
 from clutchwork.gradients.functional import Functional
 from clutchwork.gradients.primal import Primal
 from clutchwork.gradients.signals import add_signal, signal_at
@@ -55,6 +56,7 @@ class Measure(NamedTuple):
     is_unseen: bool = False  # an extreme that is not in them
     is_held: bool = False  # the lock-up of a contact that is locked all the while
     feels_start: bool = False  # whether it has a share of accelerations and torques at the very start
+    is_sum: bool = False  # a squared jerk, which has a share of all that settles
     is_bent: bool = False  # whether it looks at a step in which bristles turn, as no event does
 
 
@@ -65,7 +67,8 @@ class Context(NamedTuple):
     kept_as: Mapping[str, str]  # integrals by name -> signal
     begin: float  # s
     massless: frozenset[str] = frozenset()  # accelerations of shafts without inertia
-    bristles: tuple[Mapping[int, float], ...] = ()  # slips of contacts whose laws have them: shares of shafts
+    bristles: tuple[Shares, ...] = ()  # slips of contacts whose laws have them
+    powers: tuple[Shares, ...] = ()  # of those whose laws have a power of the slip, which no polynomial follows
     # of the value: what may be missed of a derivative, for a number that changes by all of itself
     unknown: float = 1e-6
 
@@ -82,7 +85,7 @@ def measures(primal: Primal, one: Output, asked: Context) -> Iterator[Measure]:
         case When():
             yield _when(primal, one, asked)
         case Extreme():
-            yield _extreme(primal, one, asked.bristles)
+            yield _extreme(primal, one, asked)
         case FeltJerk():
             yield _felt(primal, one, asked.begin)
         case SquaredJerk():
@@ -131,16 +134,6 @@ def _is_held(primal: Primal, one: When, contact: int) -> bool:
     return one.kind == "lock" and not changes and bool(np.all(modes[-1:] == LOCKED))
 
 
-def _turning(primal: Primal, bristles: tuple[Mapping[int, float], ...]) -> NDArray[np.bool_]:
-    """Steps inside of which a slip with bristles changes its sign: no event ends them there."""
-    found, first = np.zeros(len(primal.steps), dtype=bool), primal.columns["speed"].start
-    for shares in bristles:
-        speeds = primal.rows[primal.steps.rows[:, :, None], first + np.array([*shares], dtype=np.intp)]
-        slip = speeds @ np.array([*shares.values()])
-        found |= slip.min(axis=1) * slip.max(axis=1) < 0.0
-    return found
-
-
 def _is_near(primal: Primal, when: tuple[float, ...], turning: Places) -> bool:
     """Whether bristles turn about when an extreme is: many short steps may lie in between."""
     steps, room = primal.steps, NEAR * (primal.t_end - float(primal.times[0]))
@@ -148,12 +141,13 @@ def _is_near(primal: Primal, when: tuple[float, ...], turning: Places) -> bool:
     return bool(np.any(apart <= room))
 
 
-def _extreme(primal: Primal, one: Extreme, bristles: tuple[Mapping[int, float], ...]) -> Measure:
+def _extreme(primal: Primal, one: Extreme, asked: Context) -> Measure:
     steps, values = primal.steps, signal_at(primal, one.signal, primal.steps.rows)
     found = extremes.apart(primal, extremes.candidates(one, steps, values))
     changes = [primal.functional() for _ in found]
     missed = [extremes.add_extreme(primal, one, *both) for both in zip(found, changes, strict=True)]
     when, located = tuple(place.time(steps) for place in found), extremes.value(one, found)
+    bent = turning(primal, asked.bristles) | resting(primal, asked.powers)
     whole, size = extremes.further(one, located, primal.by_rows[one]), float(np.abs(values).max(initial=0.0))
     return Measure(
         value=whole,
@@ -165,7 +159,7 @@ def _extreme(primal: Primal, one: Extreme, bristles: tuple[Mapping[int, float], 
         is_least=one.kind == "minimum",
         missed=tuple(lost for lost in missed if lost is not None),
         feels_start=min(when, default=primal.t_end) <= primal.times[0],
-        is_bent=_is_near(primal, when, np.flatnonzero(_turning(primal, bristles))),
+        is_bent=_is_near(primal, when, np.flatnonzero(bent)),
         is_unseen=bool(np.isfinite(whole)) and not abs(whole - located) <= SHORT * size,
     )
 
@@ -187,7 +181,7 @@ def _jerk(primal: Primal, one: SquaredJerk, asked: Context) -> Measure:
     into, acceleration = primal.functional(), signal_at(primal, one.signal, primal.steps.rows)
     jerk.add_jerk(primal, one.signal, acceleration, into)
     is_massless, value = one.signal in asked.massless, primal.by_rows[one]
-    bends = jerk.bends_in(primal.steps, acceleration, np.flatnonzero(_turning(primal, asked.bristles)))
+    bends = jerk.bends_in(primal.steps, acceleration, np.flatnonzero(turning(primal, asked.bristles)))
     return Measure(
         value=value,
         changes=(into,),
@@ -197,5 +191,6 @@ def _jerk(primal: Primal, one: SquaredJerk, asked: Context) -> Measure:
         is_massless=is_massless,
         unseen=abs(value - jerk.seen(primal.steps, acceleration)) / max(value, 1e-291),
         feels_start=True,
+        is_sum=True,
         is_bent=bends > BENT * value,
     )

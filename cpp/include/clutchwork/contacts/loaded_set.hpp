@@ -111,8 +111,9 @@ struct LoadedLimit {
     return price[i];
   }
   /// The way in which the set gives way, for its independent contacts: that of the load, as far as it moves none of
-  /// those that hold on, which have no price. Positive is backward. docs/theory/load-dependent.md (14)
-  void find_motion(T* way) {
+  /// those that hold on, which have no price. Positive is backward. False: they leave none.
+  /// docs/theory/load-dependent.md (14)
+  bool find_motion(T* way) {
     constexpr double round_off = 1e-9;
     const int n = set.rank;
     double most = 0;
@@ -133,6 +134,9 @@ struct LoadedLimit {
         for (int r = 0; r < n; ++r) way[r] -= T(along) * tableau[k * n + r];
       }
     }
+    double left = 0, whole = 0;
+    for (int r = 0; r < n; ++r) left = larger(left, abs(value(way[r]))), whole = larger(whole, abs(value(set.load[r])));
+    return left > round_off * whole;
   }
   /// How it moves member i.
   double moves(const T* way, int i) const {

@@ -531,8 +531,8 @@ bool break_set(Workspace<T>& ws, int k, const T* carried, bool anyway) {
     // with bounds as they are: where round-off widens them, it holds any multiple, and prices are round-off
     if (!(value(solve_loaded(limit)) < limit.most) && !anyway) return false;
     T* way = ws.set.deflection;
-    limit.find_motion(way);
-    auto motion = [&](int i) { return limit.moves(way, i); };
+    const bool moves = limit.find_motion(way);
+    auto motion = [&](int i) { return moves ? limit.moves(way, i) : value(limit.price_of(i)); };
     force(motion, motion);
     return true;
   }

@@ -69,7 +69,7 @@ double line_crossing(Form& form, Step<Form>& step, const LineGuard& guard, doubl
 }
 
 /// Whether a cubic through values and slopes proves that branch k stays on its side of a level; its distances at both
-/// ends. One that swings far beyond both of them proves nothing: a stiff motion may swing more than once.
+/// ends. One that swings far beyond their sum proves nothing: a stiff motion may swing more than once.
 template <class T>
 CLUTCHWORK_INLINE Truth<T> stays_clear(const Workspace<T>& ws, int k, Real<T> sign, Real<T> level, Real<T> h,
                                        Real<T> noise, Real<T>& g0, Real<T>& g1) {
