@@ -112,3 +112,47 @@ def test_many_members_that_follow_loads_hold_what_they_can() -> None:
     held = run["e2.state"] == "locked"
     assert held.any()
     assert np.all(np.abs(run["e2.torque"][held]) <= run["e2.capacity"][held] * (1.0 + 1e-6))
+
+
+def tree(rng: np.random.Generator) -> cw.Driveline:
+    """Shafts that gears with losses and limited slips join, with brakes of which some open, and torques."""
+    d = cw.Driveline("tree")
+    free = [d.shaft(f"s{i}", inertia=float(10 ** rng.uniform(-2, 0.5))) for i in range(9)]
+    nodes = [free.pop()]
+    for number in range(int(rng.integers(2, 5))):
+        kind, at, name = int(rng.integers(3)), nodes[int(rng.integers(len(nodes)))], f"e{number}"
+        first = free.pop()
+        nodes.append(first)
+        if kind == 0:
+            losses = {"efficiency": rng.uniform(0.7, 0.98), "backward_efficiency": rng.uniform(0.1, 0.95)}
+            d.add(cw.LossyGear(name, input=at, output=first, ratio=rng.uniform(0.2, 4.0), **losses))
+        elif kind == 1:
+            worm = {"lead_angle": rng.uniform(0.05, 0.3), "friction_coefficient": rng.uniform(0.03, 0.15)}
+            d.add(cw.WormGear(name, worm=at, wheel=first, ratio=rng.uniform(3.0, 10.0), **worm))
+        else:
+            nodes.append(free.pop())
+            d.add(cw.Differential(name, carrier=at, left=first, right=nodes[-1], share=rng.uniform(0.05, 0.4)))
+    for number, node in enumerate(nodes):
+        press, most = 10 ** rng.uniform(5, 6), rng.uniform(-500.0, 500.0)
+        opens = cw.Ramp(height=-press, duration=1.0, offset=press)
+        if rng.random() < 0.7:
+            pressure = opens if rng.random() < 0.6 else press
+            d.add(cw.Brake(f"b{number}", shaft=node, friction=DRY, gain=10 ** rng.uniform(-4, -3), pressure=pressure))
+        if rng.random() < 0.6:
+            torque = cw.Ramp(height=most, duration=1.0) if rng.random() < 0.5 else most
+            d.add(cw.Torque(f"t{number}", shaft=node, torque=torque))
+    return d
+
+
+def against(run: cw.Trajectory) -> list[cw.Event]:
+    """Contacts that were let go one way and driven the other."""
+    ways = {"forward": 1.0, "backward": -1.0}
+    limits = [one for one in run.events if (one.before, one.cause) == ("locked", "torque limit")]
+    return [one for one in limits if ways.get(one.after, 0.0) * one.slip_acceleration < -1e-6]
+
+
+def test_what_gives_way_accelerates_the_way_it_was_let_go() -> None:
+    """Trees of 2 to 4 gears, of which one in some hundred is wedged so that no choice of ways is sound."""
+    runs = {seed: tree(np.random.default_rng([seed, 28])).simulate(1.0) for seed in range(300)}
+    assert {run.status for run in runs.values()} <= {"done", "jammed"}
+    assert len([seed for seed, run in runs.items() if against(run)]) <= 1
