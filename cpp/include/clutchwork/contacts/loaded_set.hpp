@@ -242,7 +242,7 @@ T solve_loaded(LoadedLimit<T>& limit) {
       choose_lines(limit, f / 3, f % 3, line);
       attempt();
     }
-    again = value(most) > before * (1 + 1e-9) && value(most) < ample;
+    again = value(most) > before + 1e-9 * abs(before) && value(most) < ample;
   }
   for (int k = 0; k < 2 * n; ++k) line[k] = best[k];
   return limit.solve();
