@@ -15,7 +15,7 @@ struct Hit {
   bool rough = false;       ///< the interpolant is elsewhere there
   int asked = -1;           ///< place of the guard that looks
   double held = -1;         ///< where what jumps there is seen as it was before, -1: nothing does
-  bool load_ends = false;   ///< a load ends there, and what it moves bends
+  bool load_ends = false;   ///< a load ends in the step, and what it moves bends
 
   CLUTCHWORK_INLINE bool none() const { return what < 0; }
 
@@ -25,7 +25,7 @@ struct Hit {
   /// What the guard that looks has found at a share of the step, where that is first.
   CLUTCHWORK_INLINE bool take(double at, int found, int leaves = -1) {
     if (!is_after(at)) return false;
-    what = asked, index = found, s = at, who = leaves, held_bends = rough = load_ends = false, held = -1;
+    what = asked, index = found, s = at, who = leaves, held_bends = rough = false, held = -1;
     return true;
   }
 };

@@ -58,31 +58,24 @@ void watch_guards(Workspace<T>& ws) {
   });
 }
 
-/// What gives way before a load ends that was found: behind it, at the end of the step, less may have to be held.
-template <class Form>
-[[gnu::noinline]] void find_held(Form& form, Step<Form>& step, Hit& hit) {
-  GuardList::each([&](auto tag, int place) {
-    using G = typename decltype(tag)::type;
-    if constexpr (std::is_same_v<G, TorqueLimit> || std::is_same_v<G, SetLimit>) {
-      hit.asked = place;
-      if (G::watches(form.ws)) G::find(form, step, hit);
-    }
-  });
-}
-
-/// First guard that turns negative inside the step.
+/// First guard that turns negative inside the step. Where a load ends, what gives way before that is looked for once
+/// more: behind it, at the end of the step, less may have to be held.
 template <class Form>
 CLUTCHWORK_INLINE Hit find_hit(Form& form, Step<Form>& step) {
   Hit hit;
   // before guards move the inputs from the end of the step
   list_near_loads(form.ws, step.h);
-  GuardList::each([&](auto tag, int place) CLUTCHWORK_HOT_LAMBDA {
-    using G = typename decltype(tag)::type;
-    hit.asked = place;
-    if (G::watches(form.ws)) G::find(form, step, hit);
-  });
-  if (hit.load_ends && form.ws.held.n > 0) find_held(form, step, hit);
-  return hit;
+  for (bool again = false;;) {
+    GuardList::each([&](auto tag, int place) CLUTCHWORK_HOT_LAMBDA {
+      using G = typename decltype(tag)::type;
+      constexpr bool holds = std::is_same_v<G, TorqueLimit> || std::is_same_v<G, SetLimit>;
+      if (again && !holds) return;
+      hit.asked = place;
+      if (G::watches(form.ws)) G::find(form, step, hit);
+    });
+    if (again || !hit.load_ends || form.ws.held.n == 0) return hit;
+    again = true;
+  }
 }
 
 }  // namespace clutchwork
