@@ -29,7 +29,7 @@ def of_bristles(system: System) -> tuple[Shares, ...]:
 
 
 def of_powers(system: System) -> tuple[Shares, ...]:
-    """Slips of contacts whose laws have a power of the slip that is no whole number."""
+    """Slips of contacts whose laws have a fractional power of the slip."""
     return _of(system, _has_power)
 
 
