@@ -167,7 +167,7 @@ def test_a_lag_has_a_derivative_unless_it_is_zero() -> None:
         d.add(cw.TorqueConverter("tc", impeller=pump, turbine=turbine, capacity=curve, lag=lag, **table))
         return d
 
-    with pytest.raises(cw.UseError, match=r"tc\.lag is 0, and a little more of it is a state more"):
+    with pytest.raises(cw.UseError, match=r"tc\.lag is 0, which leaves out a state"):
         cw.differentiable(turbine(0.0), 0.1, of="turbine.speed", by="tc.lag")
     function = cw.differentiable(turbine(0.05), 0.1, of="turbine.speed", by="tc.lag", rtol=1e-10, atol=1e-12)
     around = function(function.x0 + 1e-4) - function(function.x0 - 1e-4)

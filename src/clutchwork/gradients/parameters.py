@@ -132,7 +132,7 @@ def _number(aim: Target, name: str) -> Tunable:
         kind = "whole number" if spec.whole else "choice"
         raise Unfit(f"{name} is a {kind}, which has no derivative; sweep over it")
     if spec.fixed and not value:
-        raise Unfit(f"{name} is 0, and a little more of it is a state more; give it a value above 0")
+        raise Unfit(f"{name} is 0, which leaves out a state, so it has no derivative; give it a value above 0")
     if isinstance(value, Signal) and list(changeable(value)) == ["value"]:
         value = vars(value)["value"]
     if not isinstance(value, Real):

@@ -127,13 +127,7 @@ struct LoadedLimit {
       for (int r = 0; r < n; ++r) own[r] = T(value(set.column[i * n + r]));
       held += leaves_direction(own, held) ? 1 : 0;
     }
-    for (int again = 0; again < 2; ++again) {
-      for (int k = 0; k < held; ++k) {
-        double along = 0;
-        for (int r = 0; r < n; ++r) along += value(tableau[k * n + r] * way[r]);
-        for (int r = 0; r < n; ++r) way[r] -= T(along) * tableau[k * n + r];
-      }
-    }
+    leave_out(way, held);
     double left = 0, whole = 0;
     for (int r = 0; r < n; ++r) left = larger(left, abs(value(way[r]))), whole = larger(whole, abs(value(set.load[r])));
     return left > round_off * whole;
@@ -146,6 +140,15 @@ struct LoadedLimit {
   }
 
  private:
+  /// What a direction has of the first ones that do not move, taken from it: twice, for round-off.
+  void leave_out(T* own, int count) const {
+    const int n = set.rank;
+    for (int k = 0; k < 2 * count; ++k) {
+      const T* held = tableau + k % count * n;
+      const T along = dot(n, held, own);
+      for (int r = 0; r < n; ++r) own[r] -= along * held[r];
+    }
+  }
   /// Whether a direction leaves something of length one behind those before it.
   bool leaves_direction(T* own, int before) const {
     constexpr double dependent = 1e-9;
@@ -156,13 +159,7 @@ struct LoadedLimit {
       return sqrt(square);
     };
     const double whole = length();
-    for (int again = 0; again < 2; ++again) {
-      for (int k = 0; k < before; ++k) {
-        double along = 0;
-        for (int r = 0; r < n; ++r) along += value(tableau[k * n + r] * own[r]);
-        for (int r = 0; r < n; ++r) own[r] -= T(along) * tableau[k * n + r];
-      }
-    }
+    leave_out(own, before);
     const double left = length();
     for (int r = 0; r < n && left > 0; ++r) own[r] = own[r] / T(left);
     return left > dependent * whole;

@@ -68,7 +68,7 @@ bool takes_back_stops(Workspace<T>& ws) {
 }
 
 /// Contacts of a set that were let go one way and are driven the other may hold after all: whether there are such ones.
-/// docs/theory/contacts.md, rule 6
+/// docs/theory/load-dependent.md (14)
 template <class T>
 bool takes_back_members(Workspace<T>& ws) {
   const int ne = int(ws.sys.elements);
@@ -143,7 +143,7 @@ bool enter_pieces(Workspace<T>& ws) {
   return any;
 }
 
-/// Whether a set has given way, and not one contact.
+/// Whether a set has given way that may have members that follow loads, and not one contact.
 template <class T>
 bool is_set_limit(const Workspace<T>& ws, int located) {
   return located < 0 && ws.event_context.cause == Cause::torque_limit && ws.sys.loads > 0;
