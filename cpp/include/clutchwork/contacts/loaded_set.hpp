@@ -203,7 +203,7 @@ int range_of(const LoadedLimit<T>& limit, int f) {
   return same ? 1 : none ? 0 : 2;
 }
 
-/// Most members with loads whose ranges are all tried; of more of them one after the other is changed, again and again.
+/// Most members with loads whose ranges are all tried; of more of them one after the other is changed.
 inline constexpr int most_tried = 5;
 
 /// The largest factor over all choices of lines; the solution is that of the best one. docs/theory/load-dependent.md
@@ -227,19 +227,15 @@ T solve_loaded(LoadedLimit<T>& limit) {
     for (int f = 0, rest = number; f < n; ++f, rest /= 3) choose_lines(limit, f, rest % 3, line);
     attempt();
   }
-  // from all in one range, and from the best so far until none is better
+  // from all in one range, and from the best so far
   for (int range = 0; n > most_tried && range < 3 && value(most) < ample; ++range) {
     for (int f = 0; f < n; ++f) choose_lines(limit, f, range, line);
     attempt();
   }
-  for (bool again = n > most_tried; again;) {
-    const double before = value(most);
-    for (int f = 0; f < 3 * n && value(most) < ample; ++f) {
-      for (int k = 0; k < 2 * n; ++k) line[k] = best[k];
-      choose_lines(limit, f / 3, f % 3, line);
-      attempt();
-    }
-    again = value(most) > before + 1e-9 * abs(before) && value(most) < ample;
+  for (int f = 0; n > most_tried && f < 3 * n && value(most) < ample; ++f) {
+    for (int k = 0; k < 2 * n; ++k) line[k] = best[k];
+    choose_lines(limit, f / 3, f % 3, line);
+    attempt();
   }
   for (int k = 0; k < 2 * n; ++k) line[k] = best[k];
   return limit.solve();

@@ -67,32 +67,6 @@ bool takes_back_stops(Workspace<T>& ws) {
   return any;
 }
 
-/// Contacts of a set that were let go one way and are driven the other may hold after all: whether there are such ones.
-/// docs/theory/load-dependent.md (14)
-template <class T>
-bool takes_back_members(Workspace<T>& ws) {
-  const int ne = int(ws.sys.elements);
-  auto sets_off = [&](int c) {
-    const int way = ws.contact.forced[c];
-    return way != 0 && way == ws.contact.mode[c] && !is_stop(ws, c) && !is_rigid(ws, c) && starts_to_slide(ws, c, way);
-  };
-  auto runs_back = [&](int c) {
-    const double noise = 1e-9 * ws.decision.effort * value(sqrt(ws.geometry.own[ne + c]));
-    return ws.contact.forced[c] * value(ws.decision.acceleration[c]) < -noise;
-  };
-  accelerations_after(ws);
-  int back = 0, all = 0;
-  for (int c = 0; c < ws.sys.contacts; ++c) {
-    if (sets_off(c)) ++all, back += runs_back(c) ? 1 : 0;
-  }
-  // where none goes the way it was let go, nothing tells who holds
-  if (back == 0 || back == all) return false;
-  for (int c = 0; c < ws.sys.contacts; ++c) {
-    if (sets_off(c) && runs_back(c)) ws.contact.forced[c] = 0, ws.contact.mode[c] = locked;
-  }
-  return true;
-}
-
 /// How a contact that is at its limit and starts to slip moves direction d, however little there is to move it yet.
 template <class T>
 double breaks_away(Workspace<T>& ws, int d) {
@@ -143,12 +117,6 @@ bool enter_pieces(Workspace<T>& ws) {
   return any;
 }
 
-/// Whether a set has given way that may have members that follow loads, and not one contact.
-template <class T>
-bool is_set_limit(const Workspace<T>& ws, int located) {
-  return located < 0 && ws.event_context.cause == Cause::torque_limit && ws.sys.loads > 0;
-}
-
 /// Decide the modes; freewheels that would have to hold more than they can give way for good on the way. `running`:
 /// they are decided.
 template <class T>
@@ -160,7 +128,6 @@ Status settle_once(Workspace<T>& ws, int located) {
     switch (verdict.how) {
       case Settled::yes:
         if (stops && takes_back_stops(ws)) continue;
-        if (is_set_limit(ws, located) && takes_back_members(ws)) continue;
         if (stops) open_stops(ws);
         return Status::running;
       case Settled::no:
