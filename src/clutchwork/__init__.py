@@ -49,7 +49,8 @@ def __getattr__(name: str) -> Any:
     if found is not None:
         return globals().setdefault(name, found)
     known = () if name.startswith("_") else __getattr__("__all__")
-    raise AttributeError(f"clutchwork has no {name!r}{near(name, known)}")
+    # an object of its own keeps Python from naming a near one twice
+    raise AttributeError(f"clutchwork has no {name!r}{near(name, known)}", name=name, obj=known)
 
 
 def __dir__() -> list[str]:

@@ -188,6 +188,14 @@ def parallel(gears: int) -> cw.Driveline:
     return d
 
 
+def coasting(**carrier: float) -> cw.Driveline:
+    """A planetary set whose sun turns, with a speed of its carrier or without."""
+    d = cw.Driveline("coasting")
+    sun, ring = d.shaft("sun", inertia=0.1, speed=100.0), d.shaft("ring", inertia=0.2)
+    d.add(cw.Planetary("set", sun=sun, carrier=d.shaft("carrier", inertia=0.2, **carrier), ring=ring, ratio=3.0))
+    return d
+
+
 CRITICAL = 2.0 * float(np.sqrt(1e6 / 15.0))  # N m s/rad, of the shaft of `ringing`
 
 
@@ -232,5 +240,6 @@ CASES: dict[str, Case] = {
     "judder": Case(lambda: juddering(0.1), lambda: juddering(0.6), 4.0),
     "too fast to mesh": Case(lambda: dog(10.0), lambda: dog(2.0), 0.1),
     "joined to nothing": Case(lambda: lonely(False), lambda: lonely(True), 0.1),
+    "start left open": Case(coasting, lambda: coasting(speed=25.0), 0.1),
     "redundant gear": Case(lambda: parallel(2), lambda: parallel(1), 0.1),
 }

@@ -92,7 +92,7 @@ def assembled(whole: Model, independent: Sequence[str] = (), found: Findings | N
         "sums": parts.sums,
         "independent": tuple(model.nodes[n].name for n in made.independent),
         "places": pools.places,
-        "notes": (*made.notes, *(f"{path_of(one)}: {note}" for one in whole.elements for note in one.notes())),
+        "notes": (*made.notes, *begun.notes, *(f"{path_of(one)}: {note}" for one in whole.elements for note in one.notes())),
         "warnings": tuple(map(str, found.advice)),
     }
 
@@ -112,8 +112,8 @@ def chosen(found: Structure, wanted: Sequence[str]) -> tuple[Kinematics, Started
         return made, begun, motions
     made = replace(found.kinematics, independent=_arranged(found.rates, found.kinematics))
     order = [found.kinematics.independent.index(node) for node in made.independent]
-    speeds, answers = found.begun
-    return made, Started([speeds[place] for place in order], [answers[place] for place in order]), found.motions
+    speeds, answers, notes = found.begun
+    return made, Started([speeds[place] for place in order], [answers[place] for place in order], notes), found.motions
 
 
 def _arranged(rates: Sequence[Row], made: Kinematics) -> list[int]:

@@ -32,6 +32,7 @@ class Started(NamedTuple):
 
     speeds: list[Fraction]
     answers: list[Row]
+    notes: tuple[str, ...] = ()
 
 
 # prescribed speeds and what gives them
@@ -40,6 +41,8 @@ Motions: TypeAlias = "list[tuple[Component, Signal]]"
 ROUNDING = exact(1e-6)
 # column of the right-hand side
 KNOWN = -1
+# of a note: what shafts added before one have to do with its speed
+LEFT_OPEN = ", which the given speeds leave open, beside the rest of "
 
 
 def start(model: Mechanism, made: Kinematics) -> tuple[Started, Motions, list[Problem]]:
@@ -178,6 +181,8 @@ def initial_speeds(model: Mechanism, made: Kinematics, prescribed: Sequence[floa
         if _free(echelon.rest(tie), inputs):
             echelon.add(tie)
             used[name] = tie
+    open_ones = [node for node in rest if node < own and _free(echelon.rest(made.speeds[node]), inputs)]
+    decided = set(used)
     for node in rest:
         # all speeds are known: those not given follow
         if len(used) == len(made.independent):
@@ -188,7 +193,19 @@ def initial_speeds(model: Mechanism, made: Kinematics, prescribed: Sequence[floa
             row = balance if _free(echelon.rest(balance), inputs) else row
             echelon.add(row)
             used[model.node_label(node)] = row
-    return _solved(made, echelon, inputs), problems
+    moving = next((node for node in open_ones if _known(echelon.rest(made.speeds[node]), inputs)), None)
+    started = _solved(made, echelon, inputs)
+    if moving is not None and moving not in made.loose and not problems:
+        speed = -_known(echelon.rest(made.speeds[moving]), inputs)
+        others = [name for name in _guilty(used, made.speeds[moving], inputs) if name not in decided]
+        started = started._replace(notes=(_undecided(model, moving, speed, others),))
+    return started, problems
+
+
+def _undecided(model: Mechanism, node: int, speed: Fraction, others: list[str]) -> str:
+    """What is said of a speed that the given ones leave open, and that is not zero."""
+    unit = "m/s" if model.nodes[node].domain is Domain.TRANSLATION else "rad/s"
+    return f"{model.node_label(node)}: starts at {float(speed):.6g} {unit}{LEFT_OPEN}{' and '.join(others)}"
 
 
 def _solved(made: Kinematics, echelon: Echelon, inputs: dict[int, Fraction]) -> Started:
