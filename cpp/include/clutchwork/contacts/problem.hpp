@@ -151,6 +151,14 @@ bool step_to_bounds(BoundedProblem<T>& p) {
   return blocked;
 }
 
+/// Round-off of the slip acceleration of contact i: of what all torques make of it.
+template <class T>
+double slope_round_off(const BoundedProblem<T>& p, int i) {
+  double scale = abs(value(p.gradient[i]));
+  p.matrix.each(i, [&](int j, T g) { scale = larger(scale, abs(value(g * p.x[j]))); });
+  return 1e-13 * scale;
+}
+
 /// The bound contact whose torque most wants to come back inside (-1: none).
 template <class T>
 int most_violated(const BoundedProblem<T>& p) {
@@ -160,8 +168,7 @@ int most_violated(const BoundedProblem<T>& p) {
     if (p.bound[i] == 0 || !(p.lower[i] < p.upper[i])) continue;
     const double s = value(slope_of(p, i) + p.weight[i] * p.x[i]) * p.bound[i];
     const double unit = value(sqrt(p.matrix.diagonal[i]));
-    const double scale = 1e-13 * (abs(value(p.gradient[i])) + value(p.matrix.diagonal[i]) * abs(value(p.x[i])));
-    if (s > scale && s / unit > most) {
+    if (s / unit > most && s > slope_round_off(p, i)) {
       most = s / unit;
       worst = i;
     }
