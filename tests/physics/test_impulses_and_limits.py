@@ -125,3 +125,52 @@ def test_a_brake_that_holds_little_one_way_lets_go_in_each_period(weak: float, o
     found = [event.time for event in run.events.of("b") if event.before == "locked"]
     assert found == pytest.approx(first + np.arange(5) / frequency, abs=1e-8)
     assert np.max(run["b.torque"]) <= weak + 1e-9
+
+
+def test_no_freewheel_gives_heat() -> None:
+    """A freewheel that another one strikes is driven by it: what is lost is the heat of the other."""
+    d = cw.Driveline("two freewheels")
+    s1, s2 = d.shaft("s1", inertia=1.0, speed=-5.0), d.shaft("s2", inertia=0.02, speed=10.0)
+    first, second = (d.thermal(name, capacity=1.0, temperature=300.0) for name in ("first", "second"))
+    d.add(cw.OneWayClutch("a", base=s2, follower=s1, heat=first))
+    d.add(cw.OneWayClutch("b", base=d.housing, follower=s2, heat=second))
+    run = d.simulate(0.1)
+    assert (at_end(run, "a.heat"), at_end(run, "b.heat")) == pytest.approx((13.5, 0.0), rel=1e-12)
+    assert (at_end(run, "first.temperature"), at_end(run, "second.temperature")) == pytest.approx((313.5, 300.0))
+
+
+@pytest.mark.parametrize("seed", range(30))
+def test_heats_of_impulses_are_positive_and_what_is_lost(seed: int) -> None:
+    rng = np.random.default_rng([seed, 15])
+    d = cw.Driveline("chain")
+    speeds, inertias = rng.uniform(-10.0, 10.0, 5), 10.0 ** rng.uniform(-2.0, 0.0, 5)
+    shafts = [d.shaft(f"s{k}", inertia=inertias[k], speed=speeds[k]) for k in range(5)]
+    for k, (base, follower) in enumerate(zip([d.housing, *shafts], shafts, strict=False)):
+        d.add(cw.OneWayClutch(f"f{k}", base=base, follower=follower))
+    run = d.simulate(0.01)
+    after = np.array([at_end(run, f"s{k}.speed") for k in range(5)])
+    heats = np.array([at_end(run, f"f{k}.heat") for k in range(5)])
+    lost = 0.5 * float(inertias @ (speeds**2 - after**2))
+    assert np.all(heats >= 0.0)
+    assert heats.sum() == pytest.approx(lost, rel=1e-9)
+
+
+@pytest.mark.parametrize("seed", range(60))
+def test_a_freewheel_beside_a_clutch_carries_nothing(seed: int) -> None:
+    """Round-off alone loads it: what another shaft does beside it is decided as without it."""
+    rng = np.random.default_rng([seed, 1])
+    torque, inertia = float(rng.uniform(5.5, 40.0)), rng.uniform(0.1, 3.0, 2).tolist()
+    d = cw.Driveline("hangs on")
+    hung, driven, held = (
+        d.shaft(n, inertia=j) for n, j in zip(("hung", "driven", "held"), (inertia[0], 1.0, inertia[1]), strict=True)
+    )
+    pads = cw.Coulomb(static=0.25, kinetic=0.25)
+    d.add(cw.Torque("drive", shaft=driven, torque=torque))
+    d.add(cw.Brake("brake", shaft=held, friction=pads, gain=1.0, normal_force=float(rng.uniform(21.0, 60.0))))
+    d.add(cw.OneWayClutch("freewheel", base=hung, follower=held))
+    d.add(cw.Clutch("slips", base=driven, follower=held, friction=pads, gain=1.0, normal_force=20.0))
+    d.add(cw.Clutch("beside", base=hung, follower=held, friction=pads, gain=1.0, normal_force=20.0))
+    run = d.simulate(0.5)
+    assert run.status == "done"
+    assert at_end(run, "driven.speed") == pytest.approx(0.5 * (torque - 5.0), rel=1e-9)
+    assert at_end(run, "held.speed") == 0.0

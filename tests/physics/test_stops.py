@@ -277,3 +277,30 @@ def test_a_mass_with_stop_and_friction_of_the_conventions() -> None:
     assert model.outputs["s"](run)[-1] == pytest.approx(0.9, abs=1e-12)
     assert model.outputs["v"](run)[-1] == 0.0
     assert hit.energy_before == pytest.approx(known.y[1][-1] ** 2, rel=1e-8)
+
+
+@pytest.mark.parametrize("push", [-5.0, -8.0, -9.5])
+@pytest.mark.parametrize("law", [cw.Coulomb(static=0.4, kinetic=0.4), cw.Stribeck(static=0.4, kinetic=0.2, speed=5.0)])
+def test_bounces_that_a_brake_makes_smaller_end(law: cw.Law, push: float) -> None:
+    """A wheel of 40 N m between two plays that are drawn apart: each end strikes the two others, in turns.
+
+    With u, what is left of a strike, the struck pair stops within u^2 / 2 a_pair, and the other end comes back at the
+    root of u^2 - a_end u^2 / a_pair.
+    """
+    d = cw.Driveline("two plays")
+    left, wheel, right = (d.shaft(name, inertia=1.0) for name in ("left", "wheel", "right"))
+    for name, base, follower in (("first", left, wheel), ("second", wheel, right)):
+        d.add(cw.Backlash(name, base=base, follower=follower, gap=0.01))
+    for shaft, torque in ((left, push), (right, 10.0)):
+        d.add(cw.Torque(f"pull_{shaft.name}", shaft=shaft, torque=torque))
+    d.add(cw.Brake("brake", shaft=wheel, friction=law, gain=1.0, normal_force=100.0))
+    run = d.simulate(0.5, **TIGHT)
+    assert run.status == "done"
+    times = np.array([e.time for e in impacts(run, "first")])
+    # kg m2 three of them move after a strike, two of them brake
+    shares = [sqrt(1.0 - own / (0.5 * (40.0 - other))) / 3.0 for own, other in ((-push, 10.0), (10.0, -push))]
+    ratio = shares[0] * shares[1]
+    gaps = np.diff(times)
+    assert gaps[1:3] / gaps[:2] == pytest.approx([ratio, ratio], rel=1e-3)
+    assert times[-1] == pytest.approx(times[1] + gaps[1] / (1.0 - ratio), abs=1e-8)
+    assert all(at_end(run, f"{shaft}.speed") == 0.0 for shaft in ("left", "wheel", "right"))

@@ -60,19 +60,33 @@ void take_impulses(Workspace<T>& ws, const BoundedProblem<T>& p, const int* list
   });
 }
 
+/// What the impulses of a solved problem lose: each its size times its mean slip. None gives heat; where one does work,
+/// the others lose less in proportion. docs/theory/energy.md (3)
+template <class T>
+void lose_energy(Workspace<T>& ws, const BoundedProblem<T>& p, const int* list) {
+  auto work_of = [&](int a) { return p.x[a] * (p.gradient[a] + p.slope[a]) * T(0.5); };
+  T sum = T(0), lost = T(0);
+  for (int a = 0; a < p.n; ++a) {
+    const T work = work_of(a);
+    sum += work, lost += value(work) < 0 ? work : T(0);
+  }
+  const T share = value(lost) < 0 ? sum / lost : T(0);
+  for (int a = 0; a < p.n; ++a) {
+    const int d = int(ws.sys.elements) + list[a];
+    const T work = value(work_of(a)) < 0 ? share * work_of(a) : T(0);
+    ws.work[d] += work;
+    take_heat(ws, d, -work, ws.state);
+  }
+}
+
 /// Apply the impulses of a solved problem over speeds: new speeds, and the work of each contact.
 template <class T>
 void apply_impulses(Workspace<T>& ws, const BoundedProblem<T>& p, const int* list) {
   const int nv = int(ws.sys.speeds), ne = int(ws.sys.elements);
   T* x = ws.decision.speed;
   for (int i = 0; i < nv; ++i) x[i] = T(0);
-  for (int a = 0; a < p.n; ++a) {
-    ws.geometry.mass_weighted.add(ne + list[a], p.x[a], x);
-    // work of an impulse: impulse times mean slip
-    const T work = p.x[a] * (p.gradient[a] + p.slope[a]) * T(0.5);
-    ws.work[ne + list[a]] += work;
-    take_heat(ws, ne + list[a], -work, ws.state);
-  }
+  for (int a = 0; a < p.n; ++a) ws.geometry.mass_weighted.add(ne + list[a], p.x[a], x);
+  lose_energy(ws, p, list);
   backward_solve(nv, ws.geometry.inertia, ws.geometry.factor, x);
   if (ws.ratios.inside) take_impulses(ws, p, list);
   meter_impulse(

@@ -62,13 +62,18 @@ Real<T> stop_noise(const Workspace<T>& ws, int c) {
   return roundoff<T>(1e-14, 1e-6) * size + roundoff<T>(1e-18, 1e-12);
 }
 
+/// Whether a stop that closes at a speed was left no further than round-off since it was met.
+template <class T>
+bool returns_unseen(const Workspace<T>& ws, int c, double closing) {
+  return closing * (ws.time - ws.contact.met_at[c]) / 4 <= 4 * stop_noise(ws, c);
+}
+
 /// Speed at which a stop that is met on a side at a closing speed is left: none below the speed of rest, or after a
 /// bounce that was no higher than round-off. docs/theory/play.md, rule 2
 template <class T>
 T rebound(const Workspace<T>& ws, int c, int side, T closing) {
   const T e = visit_stop(ws, c, [&](auto tag, const auto& p) { return decltype(tag)::type::restitution(p, side); });
-  const double height = value(closing) * (ws.time - ws.contact.met_at[c]) / 4;
-  return value(e * closing) <= rest_speed(ws, c) || height <= 4 * stop_noise(ws, c) ? T(0) : e * closing;
+  return value(e * closing) <= rest_speed(ws, c) || returns_unseen(ws, c, value(closing)) ? T(0) : e * closing;
 }
 
 /// The end at which the position of a stop is, or beyond which it is: -1 or 1; 0: it is between them.
@@ -103,6 +108,31 @@ bool list_struck(const Workspace<T>& ws, bool all, double tolerance, int* list, 
     list[n++] = c;
   }
   return closes;
+}
+
+/// Whether all that closes are stops that were left no further than round-off.
+template <class T>
+bool fades(const Workspace<T>& ws, int n, double tolerance) {
+  for (int a = 0; a < n; ++a) {
+    const int c = ws.decision.list[a];
+    const double closing = -blocked_way(ws, c) * value(rate_of(ws, int(ws.sys.elements) + c));
+    if (closing > tolerance && !(is_stop(ws, c) && returns_unseen(ws, c, closing))) return false;
+  }
+  return true;
+}
+
+/// The end of bounces that friction makes ever smaller: what closes comes to rest, and what is locked stays so.
+/// docs/theory/play.md, rule 2
+template <class T>
+bool end_bounces(Workspace<T>& ws, int n, double tolerance) {
+  int* rests = ws.decision.candidate;
+  for (int c = 0; c < ws.sys.contacts; ++c) rests[c] = ws.contact.mode[c] == locked;
+  for (int a = 0; a < n; ++a) {
+    const int c = ws.decision.list[a];
+    if (-blocked_way(ws, c) * value(rate_of(ws, int(ws.sys.elements) + c)) <= tolerance) continue;
+    rests[c] = ws.contact.struck[c] = 1, ws.contact.met_at[c] = ws.time;
+  }
+  return least_impulses(ws, 0.0, [&](int c) { return rests[c] != 0; });
 }
 
 /// One impact of all that close, with those that rest: each is left at least at its rebound. `all`: without rebound.
@@ -174,7 +204,7 @@ bool collide_all(Workspace<T>& ws, bool& any) {
     int n;
     const bool all = round >= most;
     if (!list_struck(ws, all, tolerance, ws.decision.list, n)) return true;
-    if (!impact(ws, n, all, tolerance)) return false;
+    if (!(fades(ws, n, tolerance) ? end_bounces(ws, n, tolerance) : impact(ws, n, all, tolerance))) return false;
     any = true;
   }
   return true;
