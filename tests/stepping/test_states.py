@@ -16,7 +16,7 @@ import clutchwork as cw
 from clutchwork.base import archive
 from clutchwork.run.save import RUN_PARTS, RunFormatError
 from support.amount import seeds
-from support.any_model import model
+from support.any_model import agree, model
 from support.random_contacts import driveline as random_contacts
 from support.random_drivelines import T_END, describe
 
@@ -93,6 +93,40 @@ def test_all_continuations_have_the_same_bits(seed: int, tmp_path: Path) -> None
     for mine, theirs in zip(tail(later, instant), tail(whole, instant), strict=True):
         assert mine.tobytes() == theirs.tobytes()
     assert later.events[:] == cw.Events([event for event in whole.events if event.time > instant])
+
+
+@pytest.mark.filterwarnings("ignore")
+@pytest.mark.parametrize("seed", seeds(12))
+def test_a_state_at_an_event_is_what_follows_it(seed: int) -> None:
+    """Its first row is the right limit, and what has happened does not happen again."""
+    made = model.model(9000 + seed)
+    run = agree.run(made)
+    begin = made["simulation"].get("t_start", 0.0)
+    for time in sorted({e.time for e in run.events if begin < e.time < run.time[-1]})[:4]:
+        row = int(np.searchsorted(run.time, time, side="right")) - 1
+        further = model.driveline(made).simulate(run.t_end, start=run.state(at=time))
+        assert [e.element for e in further.events if e.time == time] == []
+        for name in run.names:
+            here, there = run[name][row], further[name][0]
+            if run[name].dtype.kind == "f":
+                assert there == pytest.approx(here, rel=1e-6, abs=1e-6), name
+            else:
+                assert there == here, name
+
+
+def test_a_state_where_a_slip_turns_has_turned() -> None:
+    d = cw.Driveline("band brake")
+    s1, s2 = (d.shaft(name, inertia=1.0) for name in ("s1", "s2"))
+    d.add(cw.TorqueLimiter("limiter", base=s1, follower=s2, torque=10.0))
+    d.add(cw.Torque("drive", shaft=s1, torque=cw.Table([(0.0, 5.0), (0.125, -10.0)])))
+    pads = cw.Coulomb(static=0.25, kinetic=0.25)
+    d.add(cw.BandBrake("band", shaft=s1, friction=pads, radius=0.1, wrap=4.0, force=10.0))
+    d.add(cw.QuadraticTorque("fan", shaft=s2, nominal_torque=-10.0, nominal_speed=50.0))
+    run = d.simulate(0.5)
+    (turn,) = [e.time for e in run.events if e.cause == "slip zero" and e.after == "backward"]
+    further = d.simulate(0.5, start=run.state(at=turn))
+    assert further["band.state"][0] == "backward"
+    assert all(e.time > turn for e in further.events)
 
 
 @pytest.mark.parametrize("path", MODELS, ids=lambda path: path.parent.name)

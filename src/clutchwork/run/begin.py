@@ -104,13 +104,26 @@ def reach(run: Any, stop: float, at: float) -> int:
         status = _one_step(run, stop)
         count += 1
     if run.time <= at:
-        return DONE if status in AGAIN else status
+        return _after_events(run, stop) if status in AGAIN else status
     # the step over it is taken again and cut
     run.restore(saved)
     for _ in range(count):
         if run.time < before:
             _one_step(run, stop)
     return advance(run, at)
+
+
+def _after_events(run: Any, stop: float) -> int:
+    """What happens at the present time happens, but no step is taken; the status."""
+    status, now = DONE, run.time
+    while run.time == now:
+        saved, status = run.save(), _one_step(run, stop)
+        if status not in AGAIN:
+            break
+    if run.time == now:
+        return status
+    run.restore(saved)
+    return DONE
 
 
 def advance(run: Any, stop: float) -> int:
