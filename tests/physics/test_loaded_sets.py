@@ -171,3 +171,23 @@ def test_what_gives_way_accelerates_the_way_it_was_let_go() -> None:
     runs = {seed: tree(np.random.default_rng([seed, 28])).simulate(1.0) for seed in range(300)}
     assert {run.status for run in runs.values()} <= {"done", "jammed"}
     assert len([seed for seed, run in runs.items() if against(run)]) <= 1
+
+
+def test_torques_before_a_step_are_those_of_the_row_before_it() -> None:
+    """A torque jumps; how the set shared its load until then follows from the loads of that instant."""
+    d = cw.Driveline("worm and limited slip")
+    s1, s2, s5, s6 = (d.shaft(name, inertia=1.0) for name in ("s1", "s2", "s5", "s6"))
+    d.add(cw.Torque("drive", shaft=s1, torque=cw.Step(height=10.0, start=0.125, offset=10.0)))
+    d.add(cw.WormGear("worm", worm=s1, wheel=s2, ratio=5.0, lead_angle=0.3, friction_coefficient=0.15))
+    d.add(cw.LimitedSlip("axle", carrier=s2, left=s5, right=s6, preload=2.0, drive=0.1))
+    for name, shaft, friction, force in (("left", s5, 0.1, 400.0), ("right", s6, 0.25, 80.0)):
+        pads = cw.Coulomb(static=friction, kinetic=friction)
+        d.add(cw.Brake(name, shaft=shaft, friction=pads, gain=1.0, normal_force=force))
+    d.add(cw.Torque("grade", shaft=s6, torque=7.5))
+    run = d.simulate(0.3, rtol=1e-9)
+    changed = [one for one in run.events if one.time == 0.125]
+    assert {one.element for one in changed} == {"worm", "axle", "right"}
+    before = int(np.searchsorted(run.time, 0.125, side="left"))
+    for one in changed:
+        assert one.torque_before == pytest.approx(run[f"{one.element}.torque"][before], rel=1e-9)
+        assert abs(one.torque_before) <= run[f"{one.element}.capacity"][before] * (1.0 + 1e-9)

@@ -272,9 +272,10 @@ class Phase : public StepSize<typename Form::Scalar> {
 
   void meet_knot() {
     if constexpr (has_tangents<T>) move_with(form_, step_, knot_shift(ws_));
-    if (!tells_all(form_)) rest_step(form_, step_);
+    const bool told = tells_all(form_) && ws_.sys.loads == 0;
+    if (!told) rest_step(form_, step_);
     export_state(form_, step_.y0());
-    tells_all(form_) ? note_start(form_) : note_before(form_, step_, 0.0);
+    told ? note_start(form_) : note_before(form_, step_, 0.0);
     if (knots_crowd(ws_)) return leave(Status::zeno);
     const bool jumps = any_jumps(ws_);
     if (jumps) ws_.guard.jumped_at = ws_.time;

@@ -211,7 +211,7 @@ bool tells_all(const Form& form) {
   }
 }
 
-/// The same where a step starts, from its derivatives.
+/// The same where a step starts, from its derivatives: without loads, which the shares of sets follow.
 template <class Form>
 void note_start(Form& form) {
   using T = typename Form::Scalar;
@@ -227,7 +227,6 @@ void note_start(Form& form) {
       ws.out.torque[d] = ws.jacobian.partial[k].torque;
   }
   locked_torques(ws, ws.step_start.multiplier, [&](int c, T x) { ws.out.torque[ne + c] += x; });
-  if (ws.sys.loads > 0) input_slopes_at(ws, ws.time), loads_of_all(ws, ws.out.torque, ws.loads.now);
   note_contacts(ws, [&](int k) { return ws.step_start.slope[k]; });
 }
 
