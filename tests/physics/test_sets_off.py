@@ -94,3 +94,65 @@ def test_a_slip_that_swings_within_a_step() -> None:
     slip, mode = run["e6.slip"], run["e6.mode"]
     fastest = np.abs(run["s0.speed"]).max()
     assert np.all(slip * mode >= -1e-6 * fastest)
+
+
+TOUCHES_ZERO = cw.Sine(amplitude=200.0, frequency=10.0, offset=200.0)
+DRY = cw.Coulomb(static=0.2, kinetic=0.2)
+
+
+def let_go(run: cw.Result, element: str) -> list[float]:
+    return [one.time for one in run.events if one.element == element and one.before == "locked"]
+
+
+@pytest.mark.parametrize("beside", ["lossy gear", "second brake", "disc at its limit"])
+@pytest.mark.parametrize("torque", [1e-3, 0.005, 0.02])
+def test_a_brake_whose_force_touches_zero_lets_go(beside: str, torque: float) -> None:
+    """For a moment it holds less than a torque of which it holds thousands of times as much before and after."""
+    d = cw.Driveline("touch")
+    shaft, other = d.shaft("shaft", inertia=1.0), d.shaft("other", inertia=1.0)
+    d.add(cw.Torque("load", shaft=shaft, torque=torque))
+    d.add(cw.Brake("brake", shaft=shaft, friction=DRY, gain=1.0, normal_force=TOUCHES_ZERO))
+    if beside == "lossy gear":
+        d.add(cw.LossyGear("gear", input=shaft, output=other, ratio=4.0, efficiency=0.6))
+    elif beside == "second brake":
+        d.add(cw.Brake("second", shaft=shaft, friction=DRY, gain=0.5, normal_force=TOUCHES_ZERO))
+    else:
+        # what it has left is less than what can change in a step all the time
+        d.add(cw.Torque("swings", shaft=other, torque=cw.Sine(amplitude=1e-4, frequency=10.0 / 3.0, phase=1.0)))
+        d.add(cw.Brake("second", shaft=other, friction=DRY, gain=1.0, normal_force=5.001e-4))
+    run = d.simulate(0.5)
+    # its capacity is 40 (1 + sin w t), and all that hold the shaft touch zero together
+    held = 60.0 if beside == "second brake" else 40.0
+    before = np.arccos(1.0 - torque / held) / (20.0 * np.pi)
+    assert let_go(run, "brake") == pytest.approx([0.075 + 0.1 * k - before for k in range(5)], abs=1e-7)
+
+
+@pytest.mark.parametrize("kind", ["belt drive", "belt", "clutch"])
+@pytest.mark.parametrize("phase", [0.5 * np.pi, 1.5 * np.pi])
+@pytest.mark.parametrize("torque", [0.0, 1.0])
+def test_what_touches_zero_at_a_knot_stays_pressed(kind: str, phase: float, torque: float) -> None:
+    """Its slope is round-off there, of either sign; at the start of a run too."""
+    touch = 0.5 if phase < np.pi else 0.0
+    d = cw.Driveline("touch")
+    a, b = d.shaft("a", inertia=1.0), d.shaft("b", inertia=1.0)
+    wave = cw.Sine(amplitude=200.0, frequency=1.0, offset=200.0, phase=phase)
+    if kind == "belt drive":
+        belt = {"radius_base": 0.1, "radius_follower": 0.05, "centre_distance": 0.5, "friction_coefficient": 0.3}
+        d.add(cw.BeltDrive("grip", base=a, follower=b, preload=wave, **belt))
+    elif kind == "belt":
+        d.add(cw.BeltContact("grip", base=a, follower=b, forward=1.5, backward=0.8, tension=wave))
+    else:
+        d.add(cw.Clutch("grip", base=a, follower=b, friction=DRY, gain=0.1, normal_force=wave))
+    falls = cw.Step(height=-10.0, start=0.5, offset=10.0)
+    d.add(cw.Brake("brake", shaft=b, friction=DRY, gain=1.0, normal_force=falls))
+    if torque > 0:
+        d.add(cw.Torque("load", shaft=a, torque=torque))
+    run = d.simulate(0.9)
+    assert run.status == "done"
+    if torque == 0:
+        assert np.all(run["grip.state"] == "locked")
+        assert [one.element for one in run.events] == ["brake"]
+        return
+    slips = (np.abs(run["grip.slip"]) > 1e-6) & (np.abs(run.time - touch) > 1e-3)
+    assert np.all(np.abs(run["grip.torque"][slips]) == pytest.approx(run["grip.capacity"][slips], rel=1e-6))
+    assert run["grip.state"][-1] == "locked"

@@ -1,4 +1,5 @@
 #pragma once
+#include <clutchwork/components/input.hpp>
 #include <clutchwork/components/kinds.hpp>
 #include <clutchwork/workspace.hpp>
 
@@ -107,9 +108,9 @@ bool may_stick(const Workspace<T>& ws, int c) {
   return !ws.contact.compliant[c] || contact_one_way(ws, c) || ws.contact.fault[c] == cannot_unlock;
 }
 
-/// Time derivative of the load of a contact.
-template <class T>
-T load_slope(const Workspace<T>& ws, int c) {
+/// Time derivative of the load of a contact, by that of each of its inputs: slope(reference).
+template <class T, class Slope>
+T load_slope(const Workspace<T>& ws, int c, Slope&& slope) {
   const auto& sys = ws.sys;
   return visit_contact(sys.contact_kind[c], [&](auto tag) {
     using E = typename decltype(tag)::type;
@@ -117,10 +118,27 @@ T load_slope(const Workspace<T>& ws, int c) {
     for (int i = 0; i < E::inputs; ++i) {
       const int ref = sys.contact_input[c] + i;
       input[i] = Dual<T, 1>(ws.in.u[ref]);
-      input[i].d[0] = ws.in.du[ref] + ws.in.shared_slope[ref];
+      input[i].d[0] = slope(ref);
     }
     return contact_load(sys.contact_kind[c], ws.params + sys.contact_param[c], &input[0], points_of(ws)).d[0];
   });
+}
+template <class T>
+T load_slope(const Workspace<T>& ws, int c) {
+  return load_slope(ws, c, [&](int ref) { return ws.in.du[ref] + ws.in.shared_slope[ref]; });
+}
+
+/// What a load that is zero now is a nanosecond later, by its slope there: now that of a load which touches zero is
+/// round-off. docs/theory/events.md, rule 9
+template <class T>
+T load_soon(const Workspace<T>& ws, int c) {
+  constexpr double soon = 1e-9;
+  auto slope = [&](int ref) {
+    const std::int64_t i = ws.sys.input_refs[ref];
+    const bool varies = i < ws.sys.inputs && ws.in.signal[i].varying;
+    return varies ? T(signal_slope(ws, int(i), ws.time + soon)) : ws.in.du[ref] + ws.in.shared_slope[ref];
+  };
+  return T(soon) * load_slope(ws, c, slope);
 }
 
 /// Whether the load of a contact bends over time, so that it may dip between two instants.
@@ -139,7 +157,7 @@ bool load_bends(const Workspace<T>& ws, int c) {
 template <class T>
 bool is_pressed(const Workspace<T>& ws, int c) {
   const auto load = value(load_of(ws, c));
-  return load != 0 ? load > 0 : value(load_slope(ws, c)) > 0;
+  return load != 0 ? load > 0 : value(load_soon(ws, c)) > 0;
 }
 
 /// Whether a contact can transmit: it is pressed, blocks one way, or cannot let go.
@@ -156,9 +174,9 @@ T usable_capacity(const Workspace<T>& ws, int c, int direction) {
   const auto& sys = ws.sys;
   if (ws.contact.compliant[c] || ws.contact.fault[c] == cannot_unlock || value(load_of(ws, c)) > 0)
     return capacity_of(ws, c, direction);
-  const T rising = larger(load_slope(ws, c), T(0)) * T(1e-9);
-  return rising * law_hold(sys.contact_law[c], ws.params + sys.contact_law_param[c], ws.in.u + sys.contact_law_input[c],
-                           points_of(ws));
+  return larger(load_soon(ws, c), T(0)) *
+         law_hold(sys.contact_law[c], ws.params + sys.contact_law_param[c], ws.in.u + sys.contact_law_input[c],
+                  points_of(ws));
 }
 
 /// Tolerance under which a slip counts as zero. docs/theory/contacts.md (14)

@@ -107,6 +107,20 @@ struct SetLimit : OwnScale {
       most = larger(most, abs(value(torque[ws.held.set_place[i]])));
     return most;
   }
+  /// Where a set gives way of which the load of a member bends, by what it has left of its limit load [N m]: where that
+  /// member touches zero the set may hold more than what counts as ample at all samples around, which say nothing then.
+  template <class Form>
+  [[gnu::noinline]] static void find_bending_limit(Form& form, Step<Form>& step, int k, Hit& hit) {
+    constexpr double most = 1e12;
+    auto& ws = form.ws;
+    fit(form, step);
+    auto f = [&](double s) {
+      torques_at(form, step, s);
+      const double room = value(set_room(ws, k, ws.observed.carried, round_off(ws), ws.loads.now, most));
+      return room * largest_load(ws, k, ws.observed.carried);
+    };
+    hit.take(first_crossing(f, f(0), f(1), hit.s), k);
+  }
   /// Call f for each set under next to no load with a member that holds one way alone.
   template <class T, class F>
   static void each_border(const Workspace<T>& ws, F&& f) {
@@ -140,14 +154,15 @@ struct SetLimit : OwnScale {
       const double coming = room_ahead(ws, k, ws.step_start, step.h), gone = room_ahead(ws, k, ws.step_end, -step.h);
       const double change = larger(abs(after - before), larger(before - coming, after - gone));
       bool bends = false;
+      for (int i = ws.held.set_first[k]; i < ws.held.set_first[k + 1]; ++i)
+        bends = bends || load_bends(ws, ws.held.set_member[i]);
       if (ws.ratios.n > 0) find_limit_beside(form, step, k, hit);
+      if (bends) find_bending_limit(form, step, k, hit);
       if (ws.sys.loads > 0 && holds_loads(ws)) {
         find_loaded_limit(form, step, k, smaller(smaller(before, after), smaller(coming, gone)), hit);
         continue;
       }
-      for (int i = ws.held.set_first[k]; i < ws.held.set_first[k + 1]; ++i)
-        bends = bends || load_bends(ws, ws.held.set_member[i]);
-      if (!bends && !ends_say_little(ws, hit) && smaller(before, after) > change) continue;
+      if (bends || (!ends_say_little(ws, hit) && smaller(before, after) > change)) continue;
       fit(form, step);
       auto f = [&](double s) {
         torques_at(form, step, s);

@@ -130,7 +130,7 @@ struct TorqueLimit {
     auto& ws = form.ws;
     int* watched = ws.guard.limit;
     int n = 0;
-    double m0 = infinity, m1 = infinity;
+    double m0 = infinity;
     for (int a = 0; a < ws.held.n; ++a) {
       if (is_rigid(ws, ws.held.contact[a])) {
         const double s = rigid_departure(form, step, a, hit.s);
@@ -152,13 +152,25 @@ struct TorqueLimit {
       }
       watched[n++] = a;
       m0 = smaller(m0, before + more_noise(ws, a, ws.step_start.capacity[a]));
-      m1 = smaller(m1, after + more_noise(ws, a, ws.step_end.capacity[a]));
     }
     if (n == 0) return;
     fit(form, step);
+    // each alone: one that has nothing left all the time hides where another dips
     int who = watched[0];
-    auto f = [&](double s) { return least_margin(form, step, s, watched, n, who); };
-    double s = first_crossing(f, m0, m1, hit.s);
+    double s = -1;
+    for (int i = 0; i < n; ++i) {
+      const int a = watched[i];
+      double before, after;
+      holds_on(ws, a, step.h, before, after);
+      before += more_noise(ws, a, ws.step_start.capacity[a]), after += more_noise(ws, a, ws.step_end.capacity[a]);
+      auto margin_of = [&](double x) {
+        torques_at(form, step, x);
+        return margin_seen(ws, a);
+      };
+      const double at = first_crossing(margin_of, before, after, s < 0 ? hit.s : s);
+      if (at >= 0 && (s < 0 || at < s)) s = at, who = a;
+    }
+    auto f = [&](double x) { return least_margin(form, step, x, watched, n, who); };
     if constexpr (Form::full) {
       const double sharp = first_at_no_load(form, step, f, m0, s < 0 ? hit.s : s);
       if (sharp >= 0) s = sharp;
