@@ -191,3 +191,57 @@ def test_one_value_that_converges(kind: str) -> None:
                 continue
             compared += 1
     assert compared > 0
+
+
+def struck(*points: tuple[float, float]) -> cw.Driveline:
+    """A shaft under a torque over time."""
+    d = cw.Driveline("struck")
+    d.add(cw.Torque("t", shaft=d.shaft("a", inertia=0.2, speed=5.0), torque=cw.Table(list(points))))
+    return d
+
+
+@pytest.mark.parametrize("number", ["times[2]", "values[2]"])
+def test_a_jerk_by_a_knot_on_its_grid_has_two_sides(number: str) -> None:
+    """A speed bends where a torque jumps, so speeds at that instant have one derivative before and one behind it."""
+    d, by = struck((0.0, 0.0), (0.5, 1.0), (0.5, -6.0), (0.7, -6.0)), f"t.torque.{number}"
+    f = cw.differentiable(d, 1.0, of=cw.jerk("a"), by=by, rtol=1e-12, atol=1e-14)
+    for side, step in (("left", -1e-6), ("right", 1e-6)):
+        found = cw.differentiable(d, 1.0, of=cw.jerk("a"), by=by, side=side).gradient().matrix[0, 0]
+        assert found == pytest.approx((f(f.x0 + step)[0] - f(f.x0)[0]) / step, rel=1e-4)
+    if number == "times[2]":
+        with pytest.raises(cw.NoGradient, match=r"compares speeds at 0\.5 s, where a signal jumps whose knot moves"):
+            f.gradient()
+    else:
+        assert f.gradient().problems == ()
+
+
+def test_a_jerk_at_an_event_on_its_grid_has_two_sides() -> None:
+    """A clutch locks at an instant of the grid, where the speed bends."""
+    d = cw.Driveline("locks")
+    a = d.shaft("a", inertia=1.0, speed=4.0)
+    law = cw.Coulomb(static=0.1, kinetic=0.1)
+    d.add(cw.Brake("b", shaft=a, friction=law, gain=1.0, normal_force=80.0))
+    f = cw.differentiable(d, 1.0, of=cw.jerk("a"), by="a.speed", rtol=1e-9, atol=1e-11)
+    with pytest.raises(cw.NoGradient, match=r"compares speeds at 0\.5 s, where an event is that moves"):
+        f.gradient()
+    for side, step in (("left", -1e-5), ("right", 1e-5)):
+        found = cw.differentiable(d, 1.0, of=cw.jerk("a"), by="a.speed", side=side, rtol=1e-9).gradient().matrix[0, 0]
+        assert found == pytest.approx((f(f.x0 + step)[0] - f(f.x0)[0]) / step, rel=1e-3)
+
+
+@pytest.mark.parametrize(("number", "sides"), [(3, (12.5, 87.5)), (4, (12.5, 87.5))])
+def test_two_equal_jerks_have_a_derivative_for_each_side(number: int, sides: tuple[float, float]) -> None:
+    d, by = struck((0.0, 0.0), (0.3, 0.0), (0.3, 5.0), (0.5, 5.0), (0.5, 0.0), (0.7, 0.0)), f"t.torque.values[{number}]"
+    with pytest.raises(cw.NoGradient, match=r"is reached at 0\.3 s and at 0\.5 s"):
+        cw.differentiable(d, 1.0, of=cw.jerk("a"), by=by).gradient()
+    for side, wanted in zip(("left", "right"), sides, strict=True):
+        found = cw.differentiable(d, 1.0, of=cw.jerk("a"), by=by, side=side).gradient()
+        assert found.matrix[0, 0] == pytest.approx(wanted, rel=1e-6)
+
+
+def test_a_jerk_that_stays_has_one_derivative() -> None:
+    """Of a torque that rises all windows are equal, and their jerks change alike."""
+    d = struck((0.0, 0.0), (1.0, 4.0))
+    found = cw.differentiable(d, 1.0, of=cw.jerk("a"), by=["a.inertia", "t.torque.values[2]"]).gradient()
+    assert found.problems == ()
+    np.testing.assert_allclose(found.matrix[0], [-20.0 / 0.2, 5.0], rtol=1e-6)

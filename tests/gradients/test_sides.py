@@ -228,3 +228,112 @@ def test_a_force_that_is_zero_and_acts_for_a_little_more_or_less(force, number, 
         assert found == pytest.approx((f(f.x0 + step)[0] - f(f.x0)[0]) / step, rel=1e-5, abs=1e-8)
     with pytest.raises(cw.NoGradient, match=words):
         f.gradient()
+
+
+def pressed_by(**given):
+    """Two shafts beside a clutch that little presses."""
+    d = cw.Driveline("unpressed")
+    a, b = d.shaft("a", inertia=0.2, speed=100.0), d.shaft("b", inertia=0.4, speed=50.0)
+    law = cw.Coulomb(static=0.13, kinetic=0.11)
+    piston = cw.PressureActuator("p", lag=0.05, **given.pop("piston")) if "piston" in given else None
+    if piston is not None:
+        d.add(piston)
+        given["pressure"] = piston
+    d.add(cw.Clutch("c", base=a, follower=b, friction=law, gain=1e-3, **given))
+    d.add(cw.Torque("t", shaft=a, torque=2.0))
+    return d
+
+
+ZEROS = [
+    ({"pressure": 0.0}, "c.pressure"),
+    ({"pressure": cw.Table([(0.0, 0.0), (1.0, 0.0)])}, "c.pressure.values[2]"),
+    ({"pressure": cw.Step(height=0.0, start=0.2)}, "c.pressure.height"),
+    ({"normal_force": 0.0}, "c.normal_force"),
+    # a piston without a command, whose pressure is zero too
+    ({"piston": {"command": 0.0}}, "p.command"),
+    ({"piston": {"command": cw.Table([(0.0, 0.0), (0.3, 0.0), (0.3, 1e5), (0.5, 0.0)])}}, "p.command.values[1]"),
+]
+
+
+@pytest.mark.parametrize("rtol", [1e-6, 1e-9])
+@pytest.mark.parametrize(("given", "by"), ZEROS)
+def test_a_number_that_is_zero_has_no_size_that_hides_what_a_little_more_does(rtol, given, by):
+    """Of one pascal more the speeds change by some millionths of themselves."""
+    d, of = pressed_by(**given), ["a.speed", "b.speed", "c.heat"]
+    f = cw.differentiable(d, 1.0, of=of, by=by, rtol=rtol)
+    tight = cw.differentiable(d, 1.0, of=of, by=by, **TIGHT)
+    wanted = (tight(tight.x0 + 1.0) - tight(tight.x0)) / 1.0
+    with pytest.raises(cw.NoGradient, match=r'is 0 from 0.* side="right" gives'):
+        f.gradient()
+    found = cw.differentiable(d, 1.0, of=of, by=by, side="right", rtol=rtol).gradient()
+    np.testing.assert_allclose(found.matrix[:, 0], wanted, rtol=2e-5)
+    assert found.problems == ()
+
+
+def test_a_pressure_of_a_gearbox_that_is_zero():
+    """Of an open brake, which moves the speeds by a ten-millionth of themselves for a pascal."""
+    d = cw.Driveline("shift")
+    turbine, wheels = d.shaft("turbine", inertia=0.2, speed=233.23), d.shaft("wheels", inertia=30.0)
+    d.add(cw.Transmission("box", input=turbine, output=wheels, gearbox="zf-8hp70", gear="3"))
+    d.add(cw.Torque("engine", shaft=turbine, torque=100.0))
+    wanted = {"of": ["turbine.speed", "wheels.speed"], "by": "box.A.pressure"}
+    f = cw.differentiable(d, 0.3, **wanted, **TIGHT)
+    with pytest.raises(cw.NoGradient, match='side="right" gives'):
+        cw.differentiable(d, 0.3, **wanted).gradient()
+    found = cw.differentiable(d, 0.3, side="right", **wanted).gradient().matrix[:, 0]
+    np.testing.assert_allclose(found, (f(f.x0 + 100.0) - f(f.x0)) / 100.0, rtol=1e-4)
+
+
+def test_a_piston_that_begins_without_pressure():
+    """A little is felt until it has emptied; where a command fills it at once there is a derivative."""
+    by, of, tight = "p.initial_pressure", ["a.speed", "b.speed"], {"rtol": 1e-9, "atol": 1e-11}
+    resting = pressed_by(piston={"command": 0.0, "filled": True})
+    with pytest.raises(cw.NoGradient, match="p begins with pressure zero"):
+        cw.differentiable(resting, 1.0, of=of, by=by, **tight).gradient()
+    found = cw.differentiable(resting, 1.0, of=of, by=by, side="right", **tight).gradient().matrix[:, 0]
+    # the torque for a pascal falls with the lag
+    impulse = 1e-3 * 0.11 * 0.05
+    np.testing.assert_allclose(found, [-impulse / 0.2, impulse / 0.4], rtol=1e-4)
+    filling = pressed_by(piston={"command": 1e4, "filled": True})
+    found = cw.differentiable(filling, 1.0, of=of, by=by).gradient().matrix[:, 0]
+    np.testing.assert_allclose(found, [-impulse / 0.2, impulse / 0.4], rtol=1e-4)
+
+
+def tied(scale=1.0):
+    """Two shafts whose start speeds are both given, a gear that ties them, and one that is far faster."""
+    d = cw.Driveline("tied")
+    a, b = d.shaft("a", inertia=0.1, speed=10.0), d.shaft("b", inertia=0.2, speed=5.0)
+    d.add(cw.Gear("g", input=a, output=b, ratio=2.0))
+    d.add(cw.Torque("t", shaft=a, torque=1.0))
+    d.shaft("far", inertia=1.0, speed=10.0 * scale)
+    return d
+
+
+@pytest.mark.parametrize(
+    ("by", "scale"), [("a.speed", 1.0), ("b.speed", 1.0), ("g.ratio", 1.0), ("a.speed", 1e3), ("b.speed", 1e3)]
+)
+def test_a_number_that_others_tie_has_no_derivative(by, scale):
+    """A little of contradiction is forgiven as round-off, which makes no value beside it."""
+    f = cw.differentiable(tied(scale), 1.0, of=["a.speed", cw.maximum("b.speed")], by=[by, "t.torque"], side="right")
+    with pytest.raises(cw.ModelError, match="contradicts the initial speed"):
+        f(f.x0 * np.array([1.01, 1.0]))
+    found = f.gradient()
+    assert np.isnan(found.matrix[:, 0]).all()
+    assert np.isfinite(found.matrix[:, 1]).all()
+    (problem,) = found.problems
+    assert "others tie it" in problem
+    assert "contradicts the initial speed" in problem
+    assert "remove this one" in problem
+
+
+def test_tied_numbers_do_not_move_those_in_doubt_beside_them():
+    """Three start values of contacts at rest, looked at together."""
+    d = tied()
+    names = ["a.speed"]
+    for number in range(3):
+        s = d.shaft(f"s{number}", inertia=1.0, speed=0.0)
+        d.add(cw.Brake(f"b{number}", shaft=s, friction=cw.Coulomb(static=0.1, kinetic=0.1), gain=1.0, normal_force=0.0))
+        names.append(f"s{number}.speed")
+    found = cw.differentiable(d, 1.0, of=["a.speed", "s0.speed", "s1.speed", "s2.speed"], by=names).gradient()
+    assert np.isnan(found.matrix[:, 0]).all()
+    np.testing.assert_allclose(found.matrix[:, 1:], np.eye(4)[:, 1:], atol=1e-9)

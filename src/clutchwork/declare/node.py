@@ -248,7 +248,7 @@ class Component(Element):
     open: ClassVar[bool] = False  # a composite whose parts are seen one by one in tables and pictures of energy
     gathers: ClassVar[bool] = False  # of a process: an input before all others has the sum of what is drawn into it
     jumps: ClassVar[bool] = False  # a torque element whose torque jumps: its shafts need inertia, as at a contact
-    bends: ClassVar[bool] = False  # a torque element whose equations change where a state of it passes zero
+    bends: ClassVar[bool] = False  # a torque element or a process whose equations change where its state passes zero
 
     # what an element has unless it declares a field of that name
     friction = cast("Law | None", None)

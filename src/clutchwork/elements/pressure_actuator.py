@@ -19,7 +19,9 @@ class PressureActuator(Component):
     the pressure on the plates rises with the time constant `lag`. Below the pressure of the spring it empties again.
     """
 
-    command: SignalLike = signal("Pa", "commanded pressure at the piston")
+    bends = True
+
+    command: SignalLike = signal("Pa", "commanded pressure at the piston", clips=True)
     lag: float = param("s", "time constant of the pressure", above=0.0)
     fill_time: float = param("s", "time to fill at `fill_pressure`", default=0.0, at_least=0.0)
     fill_pressure: float = param("Pa", "command above the spring that fills it in `fill_time`", default=1e5, above=0.0)

@@ -11,13 +11,16 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
+from clutchwork.assembly.changes import owners_of
 from clutchwork.base.classes import dataclass
 from clutchwork.base.errors import ModelError, ModelWarning
 from clutchwork.base.memoize import memoize
 from clutchwork.base.quote import measured
 from clutchwork.declare.layout import FIELDS
+from clutchwork.declare.node import Node
 from clutchwork.gradients.finite_differences import ROUND_OFF, Bent, Rebuilt, slope
 from clutchwork.gradients.parameters import Tunable, changes
+from clutchwork.model.changes import target
 from clutchwork.results.gradient import NoGradient
 
 if TYPE_CHECKING:
@@ -63,6 +66,12 @@ def turning(system: System) -> tuple[Places, Array]:
         turns += [turn for _, turn in own]
         number += max(1, len(kind.ways))
     return np.array(places, dtype=np.intp), np.array(turns)
+
+
+def is_start_speed(system: System, one: Tunable) -> bool:
+    """Whether a number is the speed of a shaft at the start, which may contradict others."""
+    aim = target(owners_of(system), one.field)
+    return aim is not None and isinstance(aim.owner, Node) and aim.path == ("speed",)
 
 
 def finite(words: Array) -> Array:
@@ -136,8 +145,9 @@ class Assembled:
         for number in self.numbers:
             one = self.parameters[number]
             own = abs(float(x[number]))
+            scale = max(one.compared(own), self._speeds if is_start_speed(self.system, one) else 0.0)
             try:
-                found = slope(partial(_along, there, x, number), here, own, one.compared(own), one.reach, noise)
+                found = slope(partial(_along, there, x, number), here, own, scale, one.reach, noise)
             except Bent as bent:
                 problems.append(f"{one.name} = {measured(x[number], one.unit)}: {bent}")
                 continue
@@ -147,6 +157,11 @@ class Assembled:
             raise NoGradient(problems)
         slopes = np.stack(columns, axis=1)
         return slopes, straight and self._is_plane(x, here, slopes, there)
+
+    @cached_property
+    def _speeds(self) -> float:
+        """The largest start speed that is given, of which one that others tie may miss its round-off."""
+        return max((abs(node.speed or 0.0) for node in self.system.nodes), default=0.0)
 
     def _noise(self, words: Array) -> Array:
         """Round-off of words beyond that of their own size."""

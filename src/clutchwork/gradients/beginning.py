@@ -15,6 +15,7 @@ from clutchwork.model.parts import is_stop
 
 if TYPE_CHECKING:
     from clutchwork.assembly.system import System
+    from clutchwork.declare.node import Component
     from clutchwork.gradients.parameters import Tunable
 
 Array = NDArray[np.float64]
@@ -56,13 +57,22 @@ def at_zero(chart: Chart, slopes: Slopes) -> Iterator[tuple[str, Mask]]:
     system, states = chart.assembled.system, chart.words_in("initial_state")
     if not slopes.touch(*states):
         return
-    for element in (one for one in system.elements if one.bends):
-        first = int(system.arrays["element_state"][system.numbered.places[element.name][1]])
-        for place, (state, start) in enumerate(zip(element.own_states(), element.initial_states(), strict=True), first):
+    for part, first in _bending(system):
+        for place, (state, start) in enumerate(zip(part.own_states(), part.initial_states(), strict=True), first):
             numbers: Mask = slopes.of(np.array([states[0] + place]))[0] != 0.0
             if start == 0.0 and numbers.any():
-                why = f"{element.name} begins with {state.name} zero, on whose sides it has other equations"
+                why = f"{part.name} begins with {state.name} zero, on whose sides it has other equations"
                 yield why, numbers
+
+
+def _bending(system: System) -> Iterator[tuple[Component, int]]:
+    """Elements and processes whose equations change where a state passes zero, and the place of their first state."""
+    places, starts = system.numbered.places, system.arrays
+    for one in (one for one in system.elements if one.bends):
+        yield one, int(starts["element_state"][places[one.name][1]])
+    for number, one in enumerate(system.processes):
+        if one.bends:
+            yield one, int(starts["process_state"][number])
 
 
 def at_border(system: System, parameters: Sequence[Tunable], x: Array) -> Iterator[tuple[str, Mask]]:

@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from clutchwork.gradients.finite_differences import TIED
 from clutchwork.gradients.task import GradientTask
 from clutchwork.results.gradient import NoGradient
 
@@ -18,6 +19,10 @@ class Bends(Exception):  # noqa: N818, it is caught where it is raised
     def __init__(self, numbers: Mapping[int, str]) -> None:
         super().__init__()
         self.numbers = numbers
+
+    def is_tied(self, number: int) -> bool:
+        """Whether there is no value beside a number: what is forgiven of rounding makes no derivative."""
+        return TIED in self.numbers[number]
 
 
 def bends_of(none: NoGradient, task: GradientTask) -> Exception:

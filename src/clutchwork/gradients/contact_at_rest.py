@@ -137,12 +137,12 @@ def _rate(piece: Array) -> float:
 
 @memoize
 def pressing(system: System) -> tuple[int, ...]:
-    """Numbers of the signals that press contacts, or count as zero below zero."""
+    """Numbers of the signals that press contacts, themselves or by a piston, or count as zero below zero."""
     known = {item.name: number for number, item in enumerate(system.inputs)}
     found = (
-        f"{contact.name}.{name}"
-        for contact in (*system.contacts, *system.flows, *system.elements)
-        for names, spec in inputs(type(contact))
+        f"{part.name}.{name}"
+        for part in (*system.contacts, *system.flows, *system.elements, *system.processes)
+        for names, spec in inputs(type(part))
         for name in (names if spec.presses or spec.gain or spec.clips else ())
     )
     return tuple(known[name] for name in found if name in known)

@@ -49,6 +49,8 @@ class Doubt(NamedTuple):
     numbers: Mask
     # what a number does on one side is the same wherever the others are on that side
     one_way: bool = False
+    # nothing beside the point is looked at: there is no value
+    is_closed: bool = False
     # how much farther beside the point it is looked at, and at least how far: what lasts too short is not seen
     width: float = 1.0
     least: float | Array = 0.0
@@ -69,6 +71,7 @@ class Doubts:
             return
         yield from self._asked_at_events()
         yield from self._asked_at_knots()
+        yield from self._compared()
         yield from self._kinks()
         yield from self._decisions()
         yield from self._start()
@@ -131,6 +134,19 @@ class Doubts:
             if line.at is not None and (self._ends_at_knot(line.at) or self._bends(line)):
                 why = f"{line.name} is asked for at a knot that moves, {line.at:.9g} s; ask before or behind it"
                 yield Doubt(why, self._only(number), self._moving_knots())
+
+    def _compared(self) -> Iterator[Doubt]:
+        """Speeds that are compared at instants at which torques jump: they bend where these move."""
+        for number, line in enumerate(self.lines):
+            if not line.compares:
+                continue
+            only, times = self._only(number), np.array(line.compares)
+            why = f"{line.name} compares speeds at {{:.9g}} s, where {{}}; move that, or take another window"
+            for time in times[self.run.primal.bends_at(line.columns, times)].tolist():
+                yield Doubt(why.format(time, "a signal jumps whose knot moves"), only, self._moving_knots())
+            for time in times.tolist():
+                if self._is_at(time):
+                    yield Doubt(why.format(time, "an event is that moves"), only, self._moving_events(time))
 
     def _bends(self, line: Line) -> bool:
         return bool(self.run.primal.bends_at(line.columns, np.array([line.at]))[0])

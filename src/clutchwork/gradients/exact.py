@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import field, replace
 from functools import cached_property
@@ -194,7 +194,7 @@ class Exact:
         try:
             known, beside = self._known(x), self._beside
         except Bends as bends:
-            known, beside = self._known_without(x, bends.numbers), self._beside_alone
+            known, beside = self._known_without(x, bends), self._beside_alone
         return self._settled(x, beside, *known)
 
     def _settled(
@@ -227,9 +227,9 @@ class Exact:
         at = f"at {self.runs.wanted.begin:g} s and later"
         return [f"{name} {at}: {law.steep}; derivatives have few digits" for name, law in laws if law and law.steep]
 
-    def _known_without(self, x: Array, bent: Mapping[int, str]) -> tuple[list[Line], list[Doubt], tuple[str, ...]]:
+    def _known_without(self, x: Array, bent: Bends) -> tuple[list[Line], list[Doubt], tuple[str, ...]]:
         """The same where some numbers are at kinks of the driveline: these are in doubt."""
-        kept = np.array([number not in bent for number in range(len(x))])
+        kept = np.array([number not in bent.numbers for number in range(len(x))])
         found, doubts, notes = self._values_alone(x), list[Doubt](), tuple[str, ...]()
         if kept.any():
             rest = self._with(x, np.flatnonzero(kept).tolist())
@@ -243,7 +243,10 @@ class Exact:
             )
             for one in doubts
         ]
-        doubts += [Doubt(why, all_, np.arange(len(x)) == number) for number, why in bent.items()]
+        doubts += [
+            Doubt(why, all_, np.arange(len(x)) == number, is_closed=bent.is_tied(number))
+            for number, why in bent.numbers.items()
+        ]
         nan = float("nan")
         whole = [one._replace(left=spread(one.left, kept, nan), right=spread(one.right, kept, nan)) for one in found]
         return whole, doubts, notes

@@ -26,6 +26,8 @@ ALLOWED = 1e-9
 LOST = 3e-11
 # of a value, and of a sum of the largest part of it
 ROUND_OFF = 4e-16
+# what is said where there is no value on both sides
+TIED = "others tie it, so that no value beside it is allowed and there is no derivative"
 CENTRAL = tuple(k for k in range(-4, 5) if k)
 UPWARD = tuple(range(7))
 
@@ -41,6 +43,10 @@ class Bent(Exception):  # noqa: N818, it is caught where it is raised
     """A function that has no derivative: it jumps or has a kink."""
 
 
+class Refused(Bent):
+    """A function that has no value on both sides, up to as near as it is looked at."""
+
+
 class Rebuilt(Exception):  # noqa: N818, it is caught where it is raised
     """A function is another one there."""
 
@@ -53,11 +59,15 @@ def slope(
     Parameters: function, raises ModelError where it is not defined, so that one side is asked alone, and Rebuilt where
     it is another one; here, its value at 0; own, the size of the number that its argument changes; scale, what that is
     compared with, or 0: right beside zero steps of its own size leave round-off; reach, how far it is the same; noise,
-    round-off of its values that are left of larger ones. Bent where it has no derivative.
+    round-off of its values that are left of larger ones. Bent where it has no derivative, Refused where it is that for
+    want of values.
     """
     size = max(own, scale) or 1.0
     try:
         return _slope(function, here, size, reach, noise)
+    except Refused:
+        # nearer by the round-off that start values may contradict each other by is forgiven
+        raise
     except Bent:
         if own in {0.0, size}:
             raise
@@ -75,7 +85,21 @@ def _slope(function: Callable[[float], Array], here: Array, scale: float, reach:
         if found is not None:
             return found
         width *= NARROWER
+    refused = [_refused(function, side) for side in (width / NARROWER, -width / NARROWER)]
+    if all(refused):
+        raise Refused(f"{TIED}; a little more of it: {_refused(function, WIDTH * scale) or refused[0]}")
     raise Bent(_why(function, width))
+
+
+def _refused(function: Callable[[float], Array], step: float) -> str:
+    """Why a function has no value there; nothing where it has one, or is another one."""
+    try:
+        function(step)
+    except ModelError as error:
+        return str(error.problems[0])
+    except Rebuilt:
+        pass
+    return ""
 
 
 def _is_defined(function: Callable[[float], Array], width: float) -> bool:

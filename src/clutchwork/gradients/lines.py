@@ -54,6 +54,7 @@ class Line(NamedTuple):
     feels_start: bool = False  # whether it has a share of what is at the very start
     is_sum: bool = False  # whether it is a squared jerk
     is_bent: bool = False  # whether it looks at a bend that no event tells
+    compares: tuple[float, ...] = ()  # s, instants whose speeds it compares
     is_open: bool = False  # whether runs of two tolerances do not agree on it, of a value that is rough at both
 
     def opened(self, numbers: NDArray[np.bool_]) -> Line:
@@ -92,7 +93,7 @@ def lines(run: Run, outputs: Mapping[str, Output], labels: Sequence[str], asked:
 def without_derivatives(labels: Sequence[str], found: Sequence[Measure]) -> list[Line]:
     """Lines of measures for what asks for no derivatives: when they look, and where."""
     return [
-        Line(name, one.value, one.size, NONE, NONE, one.until, one.at, _columns(one), one.kinks)
+        Line(name, one.value, one.size, NONE, NONE, one.until, one.at, _columns(one), one.kinks, compares=one.compares)
         for name, one in zip(labels, found, strict=True)
     ]
 
@@ -143,7 +144,8 @@ def _line(run: Run, name: str, one: Measure, sizes: Array, allowed: float) -> Li
     rough = bool(why) or bool(np.any(lost > allowed))
     most_missed = max(float(lost.max(initial=0.0)), run.primal.rtol if one.is_bent else 0.0)
     made = Line(name, one.value, size, left, right, one.until, one.at, columns, one.kinks, "", why, rough, most_missed)
-    return made._replace(feels_start=one.feels_start, is_sum=one.is_sum, is_bent=one.is_bent)
+    made = made._replace(feels_start=one.feels_start, compares=one.compares)
+    return made._replace(is_sum=one.is_sum, is_bent=one.is_bent)
 
 
 def unknown(run: Run, one: Measure, sizes: Array) -> Array:

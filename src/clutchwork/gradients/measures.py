@@ -36,6 +36,8 @@ SHORT = 1e-6
 NEAR = 1e-4
 # by so much of a squared jerk bristles that turn may move it
 BENT = 1e-5
+# places of the speeds that a second difference is made of
+WINDOWS = np.array([0, PER_WINDOW, 2 * PER_WINDOW])
 AT = {name: column for column, (name, _) in enumerate(EVENT)}
 
 
@@ -47,6 +49,7 @@ class Measure(NamedTuple):
     until: float  # s
     when: tuple[float, ...] = ()  # s, where the extremes are
     at: float | None = None  # s, an instant that is asked for
+    compares: tuple[float, ...] = ()  # s, instants whose speeds it compares
     kinks: tuple[float, ...] = ()  # s, where knots meet that it depends on
     size: float = 0.0  # of the signal whose extreme it is
     is_least: bool = False  # a minimum, which of equal ones is the one that falls most
@@ -171,10 +174,27 @@ def _felt(primal: Primal, one: FeltJerk, begin: float) -> Measure:
         return Measure(float("nan"), (), primal.t_end)
     rows = np.searchsorted(primal.times, times)
     jerks = one.felt(signal_at(primal, one.signal, rows))
-    place, into = int(np.argmax(np.abs(jerks))), primal.functional()
-    weights = np.sign(jerks[place]) / one.window**2 * np.array([1.0, -2.0, 1.0])
-    add_signal(primal, one.signal, rows[place : place + 2 * PER_WINDOW + 1 : PER_WINDOW], weights, into)
-    return Measure(float(abs(jerks[place])), (into,), float(times[place + 2 * PER_WINDOW]))
+    places, changes = _largest(np.abs(jerks)), list[Functional]()
+    for place in places.tolist():
+        changes.append(primal.functional())
+        weights = np.sign(jerks[place]) / one.window**2 * np.array([1.0, -2.0, 1.0])
+        add_signal(primal, one.signal, rows[place + WINDOWS], weights, changes[-1])
+    when, compared = times[places + PER_WINDOW], np.unique(times[places[:, None] + WINDOWS])
+    return Measure(
+        value=float(np.abs(jerks).max()),
+        changes=tuple(changes),
+        until=float(compared[-1]),
+        when=tuple(when.tolist()),
+        compares=tuple(compared.tolist()),
+    )
+
+
+def _largest(sizes: Array) -> Places:
+    """Places of the largest number and those that are as large; of neighbours, as on a plateau, both ends."""
+    equal = sizes >= (1.0 - extremes.EQUAL) * sizes.max()
+    inside = np.r_[False, equal[:-1]] & np.r_[equal[1:], False]
+    found = np.flatnonzero(equal & ~inside)
+    return found[: extremes.MOST_EQUAL]
 
 
 def _jerk(primal: Primal, one: SquaredJerk, asked: Context) -> Measure:

@@ -44,6 +44,7 @@ class Tunable:
     lower: float = -inf  # what the declaration allows
     upper: float = inf
     reach: float = inf  # how far it is from its neighbours in a table
+    unsized: bool = False  # zero without anything beside it that says how large it may be: its scale is one of its unit
 
     def compared(self, value: float) -> float:
         """What a change of it is compared with; 0 for one that has a size of its own: right beside zero none has."""
@@ -141,18 +142,19 @@ def _number(aim: Target, name: str) -> Tunable:
     if spec.what == "option" and aim.path[-1] == "tolerance" and not start:
         # contacts lock at the exact zero of their slip, which no value beside it does
         raise Unfit(f"{name} is 0, the exact zero of the slip, beside which there is another rule; give it a value")
-    return Tunable(name, name, (), unit_of(aim), start, abs(start) or _size_beside(aim), *spec.ends)
+    size = abs(start) or _size_beside(aim)
+    return Tunable(name, name, (), unit_of(aim), start, size or 1.0, *spec.ends, unsized=not size)
 
 
 def _size_beside(aim: Target) -> float:
-    """What a change of a number at zero is compared with: the largest number of its signal with its unit, else 1."""
+    """What a change of a number at zero is compared with: the largest number of its signal with its unit, else 0."""
     around = Target(aim.owner, aim.path[:-1])
     signal = field_of(around)[0] if around.path else None
     if not isinstance(signal, Signal):
-        return 1.0
+        return 0.0
     others = (Target(aim.owner, (*around.path, word)) for word in changeable(signal))
     alike = (field_of(one)[0] for one in others if unit_of(one) == unit_of(aim))
-    return max((abs(float(one)) for one in alike if isinstance(one, Real)), default=0.0) or 1.0
+    return max((abs(float(one)) for one in alike if isinstance(one, Real)), default=0.0)
 
 
 def _inside(value: Any, name: str) -> str:
@@ -193,9 +195,9 @@ def _entries(table: Target, name: str, which: str) -> Iterator[Tunable]:
         found, unit = list(_knots(value)), spec.unit_x
     gaps = np.diff([one for _, _, one in found]) if which == abscissae else np.zeros(0)
     bounds = common_ends(declared) if which == "values" else (-inf, inf)
-    reach, scale = float(np.min(gaps, initial=inf)), max(abs(one) for _, _, one in found) or 1.0
+    reach, size = float(np.min(gaps, initial=inf)), max(abs(one) for _, _, one in found)
     for words, places, one in found:
-        yield Tunable(f"{name}.{which}{words}", field, places, unit, one, scale, *bounds, reach)
+        yield Tunable(f"{name}.{which}{words}", field, places, unit, one, size or 1.0, *bounds, reach, unsized=not size)
 
 
 def _knots(points: Any) -> Iterator[tuple[str, tuple[tuple[int, ...], ...], float]]:

@@ -27,6 +27,8 @@ STEP = 1e-6
 ALIKE, BY_TOLERANCE = 1e-6, 100.0
 # nearer by, of that step; derivatives at both that differ by less are a line over the step, of their size
 NEARER, NEARLY = 0.1, 1e-2
+# a number of no known size is no larger than so many of its unit: what it does up to there is looked at
+LARGEST = 1e6
 # values that differ by more on both sides jump, of their size, and beside what their derivatives say
 JUMP, FURTHER, NOISE = 1e-3, 10.0, 1e-9
 # so many numbers in doubt are first looked at together, in so many directions
@@ -46,26 +48,31 @@ class Settling:
     task: GradientTask
     x: Array
     sizes: Array  # of the numbers
+    unsized: Mask  # numbers at zero beside which nothing says how large they are
     lines: Sequence[Line]
     both: dict[str, Array]  # left and right
     why: NDArray[np.object_] = field(repr=False)  # of each derivative: why it is in doubt
     one_way: Mask  # numbers that are in doubt for kinks alone that do not depend on the others
+    closed: Mask  # numbers beside which there is no value
     steps: Array  # how far beside the point each number is looked at
 
     @classmethod
     def of(cls, task: GradientTask, x: Array, sizes: Array, lines: Sequence[Line], doubts: Sequence[Doubt]) -> Settling:
         """Those of a run."""
         why, one_way = np.full((len(lines), len(x)), "", dtype=object), np.ones(len(x), dtype=bool)
-        steps = STEP * sizes
+        steps, closed = STEP * sizes, np.zeros(len(x), dtype=bool)
         # what concerns few numbers says more about them than what may concern all
         order = [(-int(one.numbers.sum()), one.one_way, -place) for place, one in enumerate(doubts)]
         for doubt in (doubts[-place] for _, _, place in sorted(order)):
             why[np.ix_(doubt.lines, doubt.numbers)] = doubt.why
             one_way &= doubt.one_way | ~doubt.numbers
+            closed |= doubt.numbers & doubt.is_closed
             far = np.maximum(doubt.width * STEP * sizes, doubt.least)
             steps = np.maximum(steps, np.where(doubt.numbers, far, 0.0))
         why[[bool(line.none) for line in lines]] = ""
-        return cls(task, x, sizes, lines, {side: _taken(lines, side, why.shape) for side in SIDES}, why, one_way, steps)
+        unsized = np.array([one.unsized for one in task.parameters], dtype=bool) & (np.abs(x) < sizes)
+        both = {side: _taken(lines, side, why.shape) for side in SIDES}
+        return cls(task, x, sizes, unsized, lines, both, why, one_way, closed, steps)
 
     # ------------------------------------------------------------------------------------------------------- beside it
 
@@ -75,19 +82,20 @@ class Settling:
         if len(numbers := self._open(self.one_way)) and not self._settle(numbers, lambda x: beside(x, None)):
             others[:] = True
         if len(self._open(others)) >= TOGETHER:
-            self.why[self._alike_together(beside)] = ""
+            self.why[self._alike_together(beside) & ~self.closed] = ""
         for number in self._open(others).tolist():
             self._settle(np.array([number]), partial(_alone, beside, number, len(self.x)))
 
     def _open(self, among: Mask) -> NDArray[np.intp]:
         """Numbers with derivatives in doubt."""
-        return np.flatnonzero(np.any(self.why != "", axis=0) & among)
+        return np.flatnonzero(np.any(self.why != "", axis=0) & among & ~self.closed)
 
     def _alike_together(self, beside: Beside) -> Mask:
         """Which derivatives are the same on both sides of the point, in directions that move all numbers."""
         alike, chance = np.ones(self.why.shape, dtype=bool), np.random.default_rng(0)
         for _ in range(DIRECTIONS):
             way = self.steps * chance.uniform(0.5, 1.0, len(self.x)) * chance.choice([-1.0, 1.0], len(self.x))
+            way[self.closed] = 0.0
             for sign in SIDES.values():
                 found = beside(self.x + sign * way, None)
                 if found is None:
@@ -96,7 +104,7 @@ class Settling:
                     :, None
                 ]
                 for side, own in self.both.items():
-                    alike &= self._is_one(own, _taken(found, side, alike.shape), self.sizes)
+                    alike &= self._is_one(own, _taken(found, side, alike.shape))
         return alike
 
     def _settle(self, numbers: NDArray[np.intp], beside: Callable[[Array], Sequence[Line] | None]) -> bool:
@@ -104,10 +112,10 @@ class Settling:
 
         False where there is no run on any side.
         """
-        open_, sizes = self.why[:, numbers] != "", self.sizes[numbers]
+        open_ = self.why[:, numbers] != ""
         own = np.array([one[:, numbers] for one in self.both.values()])
         there, is_run = self._beside(numbers, beside, 1.0)
-        same = self._is_same(own, there[is_run], sizes)
+        same = self._is_same(own, there[is_run], numbers)
         if np.any(open_ & ~same):
             # what is more than the derivatives at the point: the limits of those beside it
             nearer, is_run = self._beside(numbers, beside, NEARER)
@@ -116,21 +124,21 @@ class Settling:
             # one that falls with the distance itself, as that of a square at zero, ends there
             falls = np.abs(nearer - NEARER * there) <= NEARLY * NEARER * np.abs(there)
             nearly, limits = nearly | falls, np.where(falls, 0.0, limits)
-            nearly |= np.array([self._is_one(*both, sizes) for both in zip(there, nearer, strict=True)])
+            nearly |= np.array([self._is_one(*both, numbers) for both in zip(there, nearer, strict=True)])
             # what is neither the same nor a line has another kink nearby, up to which alone it would hold
             there = np.where(nearly, limits, np.nan)
-            same |= self._is_same(own, there[is_run], sizes)
-        agree, mean, new = self._is_one(there[0], there[1], sizes), 0.5 * there.sum(axis=0), open_ & ~same
+            same |= self._is_same(own, there[is_run], numbers)
+        agree, mean, new = self._is_one(there[0], there[1], numbers), 0.5 * there.sum(axis=0), open_ & ~same
         for one, beside_it in zip(self.both.values(), there, strict=True):
             one[:, numbers] = np.where(new, np.where(agree, mean, beside_it), one[:, numbers])
         self.why[:, numbers] = np.where(open_ & (agree | same), "", self.why[:, numbers])
         return bool(is_run.any())
 
-    def _is_same(self, own: Array, there: Array, sizes: Array) -> Mask:
+    def _is_same(self, own: Array, there: Array, numbers: NDArray[np.intp]) -> Mask:
         """Whether derivatives beside the point are those at it: from both sides, or from the only one."""
         if not len(there):
             return np.zeros(own.shape[1:], dtype=bool)
-        found: Mask = np.logical_and.reduce([self._is_one(one, other, sizes) for one in own for other in there])
+        found: Mask = np.logical_and.reduce([self._is_one(one, other, numbers) for one in own for other in there])
         return found
 
     def _beside(
@@ -159,11 +167,21 @@ class Settling:
     def _line_sizes(self) -> Array:
         return np.array([max(abs(line.value), line.size) for line in self.lines])
 
-    def _is_one(self, one: Array, other: Array, sizes: Array) -> Mask:
-        """Derivatives by numbers of some sizes, equal to the tolerance of the runs."""
-        allowed = ALIKE + BY_TOLERANCE * self.task.options.rtol
-        values = self._line_sizes[:, None] / sizes
-        found: Mask = np.abs(one - other) <= allowed * np.maximum(np.maximum(np.abs(one), np.abs(other)), values)
+    def _is_one(self, one: Array, other: Array, numbers: NDArray[np.intp] | slice = slice(None)) -> Mask:
+        """Derivatives by numbers, equal to the tolerance of the runs."""
+        allowed, larger = ALIKE + BY_TOLERANCE * self.task.options.rtol, np.fmax(np.abs(one), np.abs(other))
+        values = self._line_sizes[:, None] * self._shares(larger, numbers)
+        found: Mask = np.abs(one - other) <= allowed * np.maximum(larger, values)
+        return found
+
+    def _shares(self, derivatives: Array, numbers: NDArray[np.intp] | slice) -> Array:
+        """What numbers change by, of their size, for one of their unit.
+
+        One of no known size has that by which it changes any value by all of itself.
+        """
+        known = self._line_sizes > 0.0
+        effects = np.nan_to_num(derivatives[known] / self._line_sizes[known, None]).max(axis=0, initial=0.0)
+        found: Array = np.where(self.unsized[numbers], np.clip(effects, 1.0 / LARGEST, 1.0), 1.0) / self.sizes[numbers]
         return found
 
     # ------------------------------------------------------------------------------------------------------- the result
@@ -171,7 +189,7 @@ class Settling:
     def matrix(self) -> Array:
         """Derivatives: those of both sides where they agree, else those of the side that is asked for, or NaN."""
         left, right = self.both["left"], self.both["right"]
-        agree = self._is_one(left, right, self.sizes) & (self.why == "")
+        agree = self._is_one(left, right) & (self.why == "")
         chosen = np.full(left.shape, np.nan) if self.task.side is None else self.both[self.task.side]
         return np.where(agree, np.where(left == right, left, 0.5 * (left + right)), chosen)
 
