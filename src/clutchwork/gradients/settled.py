@@ -82,7 +82,7 @@ class Settling:
         if len(numbers := self._open(self.one_way)) and not self._settle(numbers, lambda x: beside(x, None)):
             others[:] = True
         if len(self._open(others)) >= TOGETHER:
-            self.why[self._alike_together(beside) & ~self.closed] = ""
+            self.why[self._alike_together(beside)] = ""
         for number in self._open(others).tolist():
             self._settle(np.array([number]), partial(_alone, beside, number, len(self.x)))
 
