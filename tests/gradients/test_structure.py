@@ -52,7 +52,7 @@ def test_a_number_whose_zero_leaves_out_a_part_has_the_side_of_a_little_of_it() 
     car = d.mass("car", mass=1000.0, speed=30.0)
     d.add(cw.Vehicle("v", mass=car, drag_area=0.6))
     wanted = {"of": "car.speed", "by": "v.rolling_rise"}
-    with pytest.raises(cw.NoGradient, match='another structure beside it.* side="right" gives'):
+    with pytest.raises(cw.NoGradient, match=r'another structure beside it.* side="right" gives'):
         cw.differentiable(d, 1.0, **wanted).gradient()
     f = cw.differentiable(d, 1.0, **wanted, rtol=1e-12, atol=1e-14)
     found = cw.differentiable(d, 1.0, **wanted, side="right").gradient().matrix[0]
