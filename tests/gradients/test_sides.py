@@ -337,3 +337,20 @@ def test_tied_numbers_do_not_move_those_in_doubt_beside_them():
     found = cw.differentiable(d, 1.0, of=["a.speed", "s0.speed", "s1.speed", "s2.speed"], by=names).gradient()
     assert np.isnan(found.matrix[:, 0]).all()
     np.testing.assert_allclose(found.matrix[:, 1:], np.eye(4)[:, 1:], atol=1e-9)
+
+
+def test_no_value_is_looked_at_farther_away_for_another_one():
+    # what feels the start is looked at far from it, where derivatives of others are no line any more
+    d = cw.Driveline("launch")
+    w, car = d.shaft("w", inertia=1.0, speed=0.0), d.mass("car", mass=400.0, speed=0.0)
+    d.add(cw.Tyre("t", shaft=w, mass=car, radius=0.3, load=4e3, low_speed_damping=1e3))
+    d.add(cw.Vehicle("v", mass=car, drag_area=0.5))
+    d.add(cw.Torque("tq", shaft=w, torque=cw.Table([(0.0, 0.0), (0.3, 220.0), (1.0, 200.0), (1.0, 0.0)])))
+    grip, press = cw.Coulomb(static=0.14, kinetic=0.117), cw.Table([(0.0, 0.0), (1.0, 0.0), (1.2, 1.8e6)])
+    d.add(cw.Brake("b", shaft=w, friction=grip, gain=5e-3, pressure=press))
+    of = ["car.speed", cw.integral("car.speed"), cw.lock("b")]
+    alone, beside = (
+        cw.differentiable(d, 2.0, of=some, by="b.gain", rtol=1e-6).gradient().matrix
+        for some in (of, [*of, cw.minimum("tq.work")])
+    )
+    np.testing.assert_array_equal(beside[:3], alone)

@@ -54,13 +54,13 @@ class Settling:
     why: NDArray[np.object_] = field(repr=False)  # of each derivative: why it is in doubt
     one_way: Mask  # numbers that are in doubt for kinks alone that do not depend on the others
     closed: Mask  # numbers beside which there is no value
-    steps: Array  # how far beside the point each number is looked at
+    steps: Array  # of each derivative: how far beside the point it is looked at
 
     @classmethod
     def of(cls, task: GradientTask, x: Array, sizes: Array, lines: Sequence[Line], doubts: Sequence[Doubt]) -> Settling:
         """Those of a run."""
         why, one_way = np.full((len(lines), len(x)), "", dtype=object), np.ones(len(x), dtype=bool)
-        steps, closed = STEP * sizes, np.zeros(len(x), dtype=bool)
+        steps, closed = np.zeros(why.shape), np.zeros(len(x), dtype=bool)
         # what concerns few numbers says more about them than what may concern all
         order = [(-int(one.numbers.sum()), one.one_way, -place) for place, one in enumerate(doubts)]
         for doubt in (doubts[-place] for _, _, place in sorted(order)):
@@ -68,7 +68,9 @@ class Settling:
             one_way &= doubt.one_way | ~doubt.numbers
             closed |= doubt.numbers & doubt.is_closed
             far = np.maximum(doubt.width * STEP * sizes, doubt.least)
-            steps = np.maximum(steps, np.where(doubt.numbers, far, 0.0))
+            steps = np.maximum(steps, np.where(doubt.lines[:, None] & doubt.numbers, far, 0.0))
+        # what is not in doubt itself goes as far as others do
+        steps = np.where(steps > 0.0, steps, np.maximum(steps.max(axis=0, initial=0.0), STEP * sizes))
         why[[bool(line.none) for line in lines]] = ""
         unsized = np.array([one.unsized for one in task.parameters], dtype=bool) & (np.abs(x) < sizes)
         both = {side: _taken(lines, side, why.shape) for side in SIDES}
@@ -77,24 +79,32 @@ class Settling:
     # ------------------------------------------------------------------------------------------------------- beside it
 
     def settle(self, beside: Beside) -> None:
-        """Find what is in doubt from runs beside the point."""
+        """Find what is in doubt from runs beside the point: no value is looked at farther away for another one."""
+        far, which = np.unique(self.steps, axis=0, return_inverse=True)
+        for place, steps in enumerate(far):
+            self._settle_lines(which.ravel() == place, steps, beside)
+
+    def _settle_lines(self, lines: Mask, steps: Array, beside: Beside) -> None:
+        """The same for some lines that are looked at in the same distance."""
         others = ~self.one_way
-        if len(numbers := self._open(self.one_way)) and not self._settle(numbers, lambda x: beside(x, None)):
+        if len(numbers := self._open(lines, self.one_way)) and not self._settle(
+            lines, numbers, steps, lambda x: beside(x, None)
+        ):
             others[:] = True
-        if len(self._open(others)) >= TOGETHER:
-            self.why[self._alike_together(beside)] = ""
-        for number in self._open(others).tolist():
-            self._settle(np.array([number]), partial(_alone, beside, number, len(self.x)))
+        if len(self._open(lines, others)) >= TOGETHER:
+            self.why[lines[:, None] & self._alike_together(steps, beside)] = ""
+        for number in self._open(lines, others).tolist():
+            self._settle(lines, np.array([number]), steps, partial(_alone, beside, number, len(self.x)))
 
-    def _open(self, among: Mask) -> NDArray[np.intp]:
-        """Numbers with derivatives in doubt."""
-        return np.flatnonzero(np.any(self.why != "", axis=0) & among & ~self.closed)
+    def _open(self, lines: Mask, among: Mask) -> NDArray[np.intp]:
+        """Numbers with derivatives of some lines in doubt."""
+        return np.flatnonzero(np.any(self.why[lines] != "", axis=0) & among & ~self.closed)
 
-    def _alike_together(self, beside: Beside) -> Mask:
+    def _alike_together(self, steps: Array, beside: Beside) -> Mask:
         """Which derivatives are the same on both sides of the point, in directions that move all numbers."""
         alike, chance = np.ones(self.why.shape, dtype=bool), np.random.default_rng(0)
         for _ in range(DIRECTIONS):
-            way = self.steps * chance.uniform(0.5, 1.0, len(self.x)) * chance.choice([-1.0, 1.0], len(self.x))
+            way = steps * chance.uniform(0.5, 1.0, len(self.x)) * chance.choice([-1.0, 1.0], len(self.x))
             way[self.closed] = 0.0
             for sign in SIDES.values():
                 found = beside(self.x + sign * way, None)
@@ -107,18 +117,24 @@ class Settling:
                     alike &= self._is_one(own, _taken(found, side, alike.shape))
         return alike
 
-    def _settle(self, numbers: NDArray[np.intp], beside: Callable[[Array], Sequence[Line] | None]) -> bool:
+    def _settle(
+        self,
+        lines: Mask,
+        numbers: NDArray[np.intp],
+        steps: Array,
+        beside: Callable[[Array], Sequence[Line] | None],
+    ) -> bool:
         """Derivatives by numbers from both sides; where they agree, and with those at the point, these stay.
 
         False where there is no run on any side.
         """
-        open_ = self.why[:, numbers] != ""
+        open_ = (self.why[:, numbers] != "") & lines[:, None]
         own = np.array([one[:, numbers] for one in self.both.values()])
-        there, is_run = self._beside(numbers, beside, 1.0)
+        there, is_run = self._beside(numbers, beside, steps)
         same = self._is_same(own, there[is_run], numbers)
         if np.any(open_ & ~same):
             # what is more than the derivatives at the point: the limits of those beside it
-            nearer, is_run = self._beside(numbers, beside, NEARER)
+            nearer, is_run = self._beside(numbers, beside, NEARER * steps)
             limits = (nearer - NEARER * there) / (1.0 - NEARER)
             nearly = np.abs(nearer - there) <= NEARLY * np.maximum(np.abs(nearer), np.abs(there))
             # one that falls with the distance itself, as that of a square at zero, ends there
@@ -142,12 +158,12 @@ class Settling:
         return found
 
     def _beside(
-        self, numbers: NDArray[np.intp], beside: Callable[[Array], Sequence[Line] | None], width: float
+        self, numbers: NDArray[np.intp], beside: Callable[[Array], Sequence[Line] | None], steps: Array
     ) -> tuple[Array, Mask]:
         """Derivatives by numbers on both sides of the point, NaN where a value jumps, and where there is a run."""
         shape = len(self.lines), len(self.x)
         made, is_run = np.full((len(SIDES), shape[0], len(numbers)), np.nan), np.zeros(len(SIDES), dtype=bool)
-        step = np.where(np.isin(np.arange(len(self.x)), numbers), width * self.steps, 0.0)
+        step = np.where(np.isin(np.arange(len(self.x)), numbers), steps, 0.0)
         for place, (side, sign) in enumerate(SIDES.items()):
             found = beside(self.x + sign * step)
             if found is not None:
