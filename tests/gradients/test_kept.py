@@ -656,3 +656,27 @@ def test_a_wave_that_begins_at_zero_presses_from_there_or_later() -> None:
     tally = judged(d, 0.1, ["a.speed", cw.squared_jerk("a")], ["c.pressure.phase", "c.pressure.amplitude"])
     assert tally.wrong + tally.refused + tally.apart + tally.whole == []
     assert tally.rightly == 1
+
+
+@pytest.mark.parametrize("t_end", [0.13, 0.5, 1.6])
+def test_a_torque_that_others_take_over_at_once_peaks_at_its_capacity(t_end: float) -> None:
+    # a polynomial over the jump hid the peak, which the wheel reaches again where it breaks away
+    d = cw.Driveline("axle")
+    e, c = d.shaft("e", inertia=0.3, speed=40.0), d.shaft("c", inertia=0.05)
+    left, right = (d.shaft(name, inertia=0.8, speed=10.0) for name in ("left", "right"))
+    car = d.mass("car", mass=1300.0, speed=3.0)
+    d.add(cw.LossyGear("fd", input=e, output=c, ratio=4.0, efficiency=0.96))
+    d.add(cw.Differential("df", carrier=c, left=left, right=right, bias=1.664))
+    grip = cw.Coulomb(static=0.2, kinetic=0.15)
+    d.add(cw.RollingContact("wl", shaft=left, mass=car, radius=0.3, friction=grip, load=3e3))
+    d.add(cw.RollingWheel("wr", shaft=right, mass=car, radius=0.3))
+    d.add(cw.Torque("t", shaft=e, torque=cw.Table([(0.0, 20.0), (0.2, 156.5)])))
+    by = ["wl.load", "t.torque.values[2]"]
+    f = cw.differentiable(d, t_end, of=cw.peak("wl.torque"), by=by)
+    found = f.gradient()
+    assert f(f.x0)[0] == pytest.approx(600.0, rel=1e-7)
+    assert found.values[0] == pytest.approx(600.0, rel=1e-7)
+    np.testing.assert_array_less(np.abs(found.matrix[0] - [0.2, 0.0]) * f.x0, 1e-6 * 600.0)
+    # what the differential takes over at that instant says nothing of how it moves
+    with pytest.raises(cw.NoGradient, match="share their load anew at once"):
+        cw.differentiable(d, 0.13, of=cw.maximum("df.torque_left"), by=by).gradient()

@@ -179,7 +179,7 @@ class Exact:
         return np.array([one.value for one in found]), run.slope(whole)
 
     def _is_rough(self, point: RunPoint, run: Run, one: Measure) -> bool:
-        if one.is_unseen or one.unseen > UNSEEN:
+        if one.is_unseen or one.lost is not None or one.unseen > UNSEEN:
             return True
         allowed = UNKNOWN if one.is_massless else self._asked.unknown
         return bool(one.missed) and bool(np.any(unknown(run, one, point.sizes) > allowed))

@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 
 from clutchwork.gradients import several_steps
 from clutchwork.gradients.functional import Functional
-from clutchwork.gradients.held_torques import torque_at_limit
+from clutchwork.gradients.held_torques import add_held, is_torn, torque_at_limit
 from clutchwork.gradients.instants import add_shift, add_turn, missed
 from clutchwork.gradients.primal import SMOOTH, Primal
 from clutchwork.gradients.sides import Sides, jumps, of_bend
@@ -270,9 +270,7 @@ def add_extreme(primal: Primal, one: Extreme, found: Located, into: Functional) 
         whole = of_bend(primal, one.signal, int(end or 0), sign) or whole
     held = torque_at_limit(primal, one.signal, found.step) if not inside and found.share == 1.0 else None
     if held is not None:
-        rows, values = steps.rows[found.step], held.sign * primal.rows[steps.rows[found.step], held.column]
-        into.add(rows, held.column, held.sign * whole[0][1][:, None])
-        add_shift(primal, int(end or 0), sign * float(steps.right_slope[found.step] @ values), into)
+        add_held(primal, held, found.step, sign, into)
         return None
     for step, weights in whole:
         add_signal(primal, one.signal, steps.rows[step], weights, into)
@@ -296,6 +294,14 @@ def add_extreme(primal: Primal, one: Extreme, found: Located, into: Functional) 
         if jumps(primal, one.signal, int(end or 0)):
             add_turn(primal, one.signal, int(end or 0), sign * rate, into)
     return None
+
+
+def is_lost(primal: Primal, one: Extreme, found: Located) -> bool:
+    """Whether an extreme is where its signal jumps without an event, which says nothing of how that instant moves."""
+    end = found.begins
+    if end is None or not is_torn(primal, end) or not jumps(primal, one.signal, end):
+        return False
+    return found.share == 0.0 or torque_at_limit(primal, one.signal, found.step) is None
 
 
 def _rows_of(primal: Primal, one: Extreme, first: int, last: int) -> Array:

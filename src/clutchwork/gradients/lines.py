@@ -106,6 +106,9 @@ def _nothing(name: str, one: Measure, t_end: float) -> str:
     """Why a measure has no derivatives; none where it has."""
     if one.is_unseen:
         return f"{name} is reached in motion that settles within a few nanoseconds, {UNSEEN_MOTION}"
+    if one.lost is not None:
+        what = f"{name} is reached at {one.lost:.9g} s, where contacts that hold together share their load anew at once"
+        return f"{what}, and nothing says how that instant moves; give one of them a law that yields"
     if one.is_held:
         return f"{name} does not happen: the contact is locked from the start to {t_end:g} s; let it slip at first"
     if not one.changes:
@@ -120,7 +123,7 @@ def _line(run: Run, name: str, one: Measure, sizes: Array, allowed: float) -> Li
     found = np.array([run.slope(change) for change in one.changes])
     if none := _nothing(name, one, run.primal.t_end):
         # what moves nothing of it moves nothing that is not seen
-        is_part = one.changes and not one.is_unseen
+        is_part = one.changes and not one.is_unseen and one.lost is None
         nothing = np.where(found[0] == 0.0, 0.0, np.nan) if is_part else np.full(len(sizes), np.nan)
         # a tighter run may see more
         rough = one.is_unseen or one.unseen > UNSEEN

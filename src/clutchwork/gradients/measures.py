@@ -57,6 +57,7 @@ class Measure(NamedTuple):
     is_massless: bool = False  # of a shaft whose accelerations are not known well
     unseen: float = 0.0  # share of a squared jerk that is not in the rows of the steps
     is_unseen: bool = False  # an extreme that is not in them
+    lost: float | None = None  # s, where it jumps without an event, and nothing says how that instant moves
     is_held: bool = False  # the lock-up of a contact that is locked all the while
     feels_start: bool = False  # whether it has a share of accelerations and torques at the very start
     is_sum: bool = False  # a squared jerk, which has a share of all that settles
@@ -162,6 +163,7 @@ def _extreme(primal: Primal, one: Extreme, asked: Context) -> Measure:
         is_least=one.kind == "minimum",
         missed=tuple(lost for lost in missed if lost is not None),
         feels_start=min(when, default=primal.t_end) <= primal.times[0],
+        lost=next((place.time(steps) for place in found if extremes.is_lost(primal, one, place)), None),
         is_bent=_is_near(primal, when, np.flatnonzero(bent)),
         is_unseen=bool(np.isfinite(whole)) and not abs(whole - located) <= SHORT * size,
     )

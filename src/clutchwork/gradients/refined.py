@@ -49,6 +49,8 @@ BENT, NOISE = 0.02, 1e-11
 NEAR = 1e-5, 1e-12
 # a step is first cut into so many parts, then where polynomials of its neighbours meet; so often at most
 CUTS, ROUNDS = 8, 6
+# what changes so much faster between two rows than beside them jumps there, where these are as close [s]
+TEARS, TORN_TIME = 100.0, 1e-6
 # shortest parts, of a step, and [s]
 SHORTEST, SHORTEST_TIME = 1e-3, 3e-8
 # capacities that differ by more on both sides of a reversing torque jump there, relative to the larger one
@@ -125,7 +127,7 @@ def _depend(rates: Array) -> bool:
 def refined(steps: Steps, ones: Sequence[Extreme], values: Values) -> Steps | None:
     """The steps split where signals bend near their extremes; None where they do not."""
     made, before = steps, [len(steps)] * len(ones)
-    for _ in range(ROUNDS):
+    for turn in range(ROUNDS + 1):
         cuts, seen = dict[int, set[float]](), values(made)
         for number, (one, own, torque) in enumerate(zip(ones, seen.values, seen.torques, strict=True)):
             rough = list(_rough(one, made, own, seen.may_bend))
@@ -136,7 +138,9 @@ def refined(steps: Steps, ones: Sequence[Extreme], values: Values) -> Steps | No
             for step, place in _turns(made, own, torque) if torque is not None else ():
                 cuts.setdefault(step, set()).add(place)
         cuts = {step: places for step, places in cuts.items() if places}
-        if not cuts:
+        if not cuts or turn == ROUNDS:
+            tears = {step: row for own in seen.values for step, row in _tears(made, own, seen.may_bend)}
+            made = made.torn_at(tears) if tears else made
             break
         made = split(made, cuts)
     return None if made is steps else made
@@ -155,13 +159,40 @@ def _rough(one: Extreme, steps: Steps, values: Array, may_bend: Mask) -> Iterato
 
 
 def _places(steps: Steps, values: Array, step: int) -> Iterator[float]:
-    """Instants that divide a step: where the polynomials of its neighbours intersect, else equal parts."""
+    """Instants that divide a step: where the polynomials of its neighbours intersect, else equal parts.
+
+    Of one with a jump those between the rows beside it.
+    """
     least = LEAST * (1.0 + abs(float(steps.begin[step]))) / float(steps.length[step])
     meeting = _meeting(steps, values, step)
-    if meeting is None and CUTS * least < 1.0:
-        yield from np.arange(1, CUTS) / CUTS
+    row = _tear(steps, values, step) if meeting is None else None
+    first, last = (0.0, 1.0) if row is None or row == PARTS else steps.share[step, row : row + 2].tolist()
+    if meeting is None and CUTS * least < last - first:
+        places = first + (last - first) * np.arange(CUTS + 1) / CUTS
+        yield from places[(places > 0.0) & (places < 1.0)].tolist()
     elif meeting is not None and max(SHORTEST, least) < meeting < 1.0 - max(SHORTEST, least):
         yield meeting
+
+
+def _tear(steps: Steps, values: Array, step: int) -> int | None:
+    """The row of a step behind which a signal jumps; the last one where it does so between it and the next one."""
+    first = step - int(step > 0 and not steps.jumps[step])
+    end = step + 1 + int(step + 1 < len(steps) and not steps.jumps[step + 1])
+    away = np.diff(steps.times[first:end].ravel())
+    rates = np.abs(np.diff(values[first:end].ravel())) / np.where(away > 0.0, away, np.inf)
+    place = int(np.argmax(rates))
+    row = place - (step - first) * (PARTS + 1)
+    # a plateau may end beside the first rows and the last ones
+    is_between = 0 < place < len(rates) - 1 and 0 <= row <= PARTS
+    return row if is_between and rates[place] > TEARS * np.delete(rates, place).max() else None
+
+
+def _tears(steps: Steps, values: Array, may_bend: Mask) -> Iterator[tuple[int, int]]:
+    """Parts of steps, and the rows in them behind which a signal jumps, the last one where it does so between parts."""
+    for step in np.flatnonzero(may_bend & ~(steps.whole & np.append(steps.whole[1:], True))).tolist():
+        row = _tear(steps, values, step)
+        if row == PARTS or (row is not None and np.diff(steps.times[step])[row] <= TORN_TIME):
+            yield step, row
 
 
 def _meeting(steps: Steps, values: Array, step: int) -> float | None:

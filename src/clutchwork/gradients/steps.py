@@ -6,6 +6,7 @@ because the instants of its events differ in the last digits. docs/theory/gradie
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from functools import cached_property
 
 import numpy as np
@@ -77,6 +78,32 @@ class Steps:
         shares = np.tile(np.arange(PARTS + 1) / PARTS, (len(self.begin), 1))
         shares[:, 0], shares[:, -1] = away, 1.0 - away
         return Steps(self.begin, self.length, shares, self.rows, self.jumps, self.whole)
+
+    def torn_at(self, places: Mapping[int, int]) -> Steps:
+        """The same where a signal jumps behind a row of some: those beside such a step reach up to it, without itself.
+
+        Behind its last row it jumps where the next one begins.
+        """
+        begin, end, jumps, gone = self.begin.copy(), self.end, self.jumps.copy(), list[int]()
+        for step, row in places.items():
+            if row == PARTS:
+                jumps[step + 1] = True
+                continue
+            gone.append(step)
+            before, behind = self.times[step, row : row + 2].tolist()
+            if step > 0 and not self.jumps[step]:
+                end[step - 1] = before
+            if step + 1 < len(self) and not self.jumps[step + 1]:
+                begin[step + 1], jumps[step + 1] = behind, True
+        kept = np.setdiff1d(np.arange(len(self)), gone)
+        begin, end = begin[kept], end[kept]
+        return Steps(begin, end - begin, self.share[kept], self.rows[kept], jumps[kept], self.whole[kept]).inside()
+
+    @property
+    def torn(self) -> NDArray[np.bool_]:
+        """Which of them begin behind a jump that is inside of a step of the solver."""
+        found: NDArray[np.bool_] = self.jumps & ~self.whole
+        return found
 
     @property
     def room(self) -> Array:
