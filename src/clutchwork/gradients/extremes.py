@@ -255,10 +255,11 @@ def kinks(primal: Primal, found: list[Located]) -> tuple[float, ...]:
     return tuple(time for time, place in primal.meets if place in there)
 
 
-def add_extreme(primal: Primal, one: Extreme, found: Located, into: Functional) -> tuple[Functional, float] | None:
+def add_extreme(primal: Primal, one: Extreme, found: Located, into: Functional) -> list[tuple[Functional, float]]:
     """How an extreme changes: the signal at its instant, and that instant where it is that of an event.
 
-    Returns what moves with an error, that instant or the last coefficient of a top, and by how much that counts.
+    Returns what moves with an error, that instant, the last coefficient or the slope of a top, and by how much each
+    counts.
     """
     steps, sign = primal.steps, 1.0 if one.kind == "minimum" else found.sign
     end, place = found.begins, (found.step, found.share)
@@ -271,15 +272,16 @@ def add_extreme(primal: Primal, one: Extreme, found: Located, into: Functional) 
     held = torque_at_limit(primal, one.signal, found.step) if not inside and found.share == 1.0 else None
     if held is not None:
         add_held(primal, held, found.step, sign, into)
-        return None
+        return []
     for step, weights in whole:
         add_signal(primal, one.signal, steps.rows[step], weights, into)
-    if end is None and not found.is_flat and place == (found.step, found.share):
+    lost = [] if end is not None or found.is_flat else [_misplaced(primal, one, *place)]
+    if lost and place == (found.step, found.share):
         moves, (first, last) = primal.functional(), steps.around(found.step, 0) or (found.step, found.step)
         # of a part of a step that of the whole one, which has its error
         longer = float((steps.end[last] - steps.begin[first]) / steps.length[found.step]) ** PARTS
         add_signal(primal, one.signal, steps.rows[found.step], longer * steps.basis[found.step, PARTS], moves)
-        return moves, TOP_MISSES
+        return [*lost, (moves, TOP_MISSES)]
     if not inside:
         slopes = steps.left_slope if found.share == 0.0 else steps.right_slope
         values = signal_at(primal, one.signal, steps.rows[found.step])
@@ -290,10 +292,23 @@ def add_extreme(primal: Primal, one: Extreme, found: Located, into: Functional) 
             add_shift(primal, int(end or 0), 1.0, moves)
             # in a short step the slope has what rows are off by, too
             off = primal.rtol * float(np.abs(values).max()) / float(steps.length[found.step])
-            return moves, abs(rate) * missed(primal, found.step, at_end=found.share == 1.0) + off
+            return [(moves, abs(rate) * missed(primal, found.step, at_end=found.share == 1.0) + off)]
         if jumps(primal, one.signal, int(end or 0)):
             add_turn(primal, one.signal, int(end or 0), sign * rate, into)
-    return None
+    return lost
+
+
+def _misplaced(primal: Primal, one: Extreme, step: int, share: float) -> tuple[Functional, float]:
+    """The slope at a top, and how far errors of rows at the tolerance of the run move it [s]."""
+    steps, moves, powers = primal.steps, primal.functional(), np.arange(1, PARTS + 1)
+    values, coefficients = signal_at(primal, one.signal, steps.rows[step]), steps.basis[step]
+    slope = (powers * share ** (powers - 1)) @ coefficients[1:] / steps.length[step]
+    bend = (powers[1:] * powers[:-1] * share ** (powers[1:] - 2)) @ coefficients[2:] / steps.length[step] ** 2
+    add_signal(primal, one.signal, steps.rows[step], slope, moves)
+    # parts of one step have its errors together
+    first, last = steps.around(step, 0) or (step, step)
+    error = primal.rtol * float(np.abs(values).max()) / float(steps.end[last] - steps.begin[first])
+    return moves, error / max(abs(float(bend @ values)), 1e-291)
 
 
 def is_lost(primal: Primal, one: Extreme, found: Located) -> bool:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
+from itertools import chain
 from typing import NamedTuple
 
 import numpy as np
@@ -161,7 +162,7 @@ def _extreme(primal: Primal, one: Extreme, asked: Context) -> Measure:
         kinks=extremes.kinks(primal, found),
         size=size,
         is_least=one.kind == "minimum",
-        missed=tuple(lost for lost in missed if lost is not None),
+        missed=tuple(chain.from_iterable(missed)),
         feels_start=min(when, default=primal.t_end) <= primal.times[0],
         lost=next((place.time(steps) for place in found if extremes.is_lost(primal, one, place)), None),
         is_bent=_is_near(primal, when, np.flatnonzero(bent)),
