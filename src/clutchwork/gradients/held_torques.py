@@ -56,7 +56,7 @@ def torque_at_limit(primal: Primal, signal: str, step: int) -> HeldTorque | None
 
 
 def is_torn(primal: Primal, step: int) -> bool:
-    """Whether a signal jumps where a step begins, and no event and no knot tells it."""
+    """Whether a signal jumps where a step begins, at no event and no knot."""
     return bool(0 < step < len(primal.steps) and primal.steps.torn[step] and primal.between[0][step] == SMOOTH)
 
 
