@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import replace
 from fractions import Fraction
 from functools import partial
@@ -20,7 +20,7 @@ from clutchwork.assembly.sparse import sparse
 from clutchwork.base import ModelError
 from clutchwork.declare.core import number
 from clutchwork.declare.layout import FIELDS
-from clutchwork.declare.node import TabledComposite, is_reference
+from clutchwork.declare.node import Component, TabledComposite, is_reference
 from clutchwork.declare.rational import ONE, Row, plus, product
 from clutchwork.declare.schema import Role, inputs
 from clutchwork.declare.wording import path_of
@@ -92,9 +92,14 @@ def assembled(whole: Model, independent: Sequence[str] = (), found: Findings | N
         "sums": parts.sums,
         "independent": tuple(model.nodes[n].name for n in made.independent),
         "places": pools.places,
-        "notes": (*made.notes, *begun.notes, *(f"{path_of(one)}: {note}" for one in whole.elements for note in one.notes())),
+        "notes": (*made.notes, *begun.notes, *_own_notes(whole.elements)),
         "warnings": tuple(map(str, found.advice)),
     }
+
+
+def _own_notes(elements: Sequence[Component]) -> Iterator[str]:
+    """What elements have to say of themselves."""
+    return (f"{path_of(one)}: {note}" for one in elements for note in one.notes())
 
 
 def chosen(found: Structure, wanted: Sequence[str]) -> tuple[Kinematics, Started, list[Any]]:
