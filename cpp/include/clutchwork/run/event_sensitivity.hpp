@@ -388,7 +388,9 @@ T hit_shift(Form& form, Step<Form>& step, const Hit& hit, const T* velocity) {
     }
   }
   const double rate = guard_rate<G>(form, step, hit, velocity);
-  const T shift = rate != 0 ? without_value(guard) * T(-1 / rate) : T(0);
+  bool moves = rate != 0;
+  if constexpr (requires { G::has_faded(ws, rate, scale); }) moves = moves && !G::has_faded(ws, rate, scale);
+  const T shift = moves ? without_value(guard) * T(-1 / rate) : T(0);
   note_graze(ws, hit.what, component, abs(rate) / scale, shift);
   return shift;
 }

@@ -67,7 +67,15 @@ struct LoadZero : OfContact {
   }
   template <class Form, class T = typename Form::Scalar>
   static double scale(Form& form, const Hit& hit, const T*) {
-    return larger(form.ws.guard.load_size[hit.index], 1e-300);
+    const auto& ws = form.ws;
+    // of a load of no known size: what a state of its usual size makes of it
+    const double size = ws.guard.load_size[hit.index], usual = 1e3 * load_at_rest(ws, hit.index) / ws.options.atol;
+    return larger(size > 0 ? size : usual, 1e-300);
+  }
+  /// Whether a load has died away, so that its errors alone place where it passes zero. docs/theory/gradients.md (3)
+  template <class T>
+  static bool has_faded(const Workspace<T>& ws, double rate, double scale) {
+    return abs(rate) * larger(ws.moved.span, 1e-9) <= 1e-6 * scale;
   }
   template <class Phase>
   static void settle(Phase& phase, const Hit& hit) {
