@@ -117,30 +117,30 @@ void apply_impulses(Workspace<T>& ws, const BoundedProblem<T>& p, const int* lis
 
 /// Contacts that an impulse must bring to rest, and all freewheels, which it must not turn backward.
 /// docs/theory/contacts.md, rule 8
-template <class T, class Stops>
-int impulse_contacts(const Workspace<T>& ws, Stops&& stops, int* list) {
+template <class T>
+int impulse_contacts(const Workspace<T>& ws, const int* stops, int* list) {
   int n = 0;
   for (int c = 0; c < ws.sys.contacts; ++c) {
     if (is_rigid(ws, c)) continue;
-    if (stops(c) || (contact_one_way(ws, c) && ws.contact.loaded[c])) list[n++] = c;
+    if (stops[c] != 0 || (contact_one_way(ws, c) && ws.contact.loaded[c])) list[n++] = c;
   }
   return n;
 }
 
 /// Of the contacts that impulses should have brought to rest but do not, as prescribed speeds and others that come to
 /// rest keep them slipping, the one that holds least; -1: none.
-template <class T, class Stops>
-int kept_slipping(const Workspace<T>& ws, const BoundedProblem<T>& p, const int* list, Stops&& stops) {
+template <class T>
+int kept_slipping(const Workspace<T>& ws, const BoundedProblem<T>& p, const int* list, const int* stops) {
   double fastest = 0, least = infinity;
   for (int a = 0; a < p.n; ++a) {
-    if (stops(list[a])) fastest = larger(fastest, abs(value(p.slope[a])));
+    if (stops[list[a]] != 0) fastest = larger(fastest, abs(value(p.slope[a])));
   }
   if (!(fastest > 1e3 * slip_tolerance(ws))) return -1;
   int found = -1;
   for (int a = 0; a < p.n; ++a) {
     const int c = list[a];
     // impulses without bound leave round-off to all others
-    if (!stops(c) || !(abs(value(p.slope[a])) > 0.1 * fastest)) continue;
+    if (stops[c] == 0 || !(abs(value(p.slope[a])) > 0.1 * fastest)) continue;
     const double holds = larger(value(capacity_of(ws, c, forward)), value(capacity_of(ws, c, backward)));
     if (found < 0 || holds < least) found = c, least = holds;
   }
@@ -150,8 +150,8 @@ int kept_slipping(const Workspace<T>& ws, const BoundedProblem<T>& p, const int*
 /// The impulses that change the kinetic energy least: some contacts come to rest, no freewheel turns backward; those
 /// that had to stop lock. Slips up to `still` need none. `kept`: one that cannot come to rest, without an impulse then.
 /// docs/theory/contacts.md (15)
-template <class T, class Stops>
-bool least_impulses(Workspace<T>& ws, double still, Stops&& stops, int* kept = nullptr) {
+template <class T>
+[[gnu::noinline]] bool stop_by_impulses(Workspace<T>& ws, double still, const int* stops, int* kept) {
   const int ne = int(ws.sys.elements);
   const double tolerance = slip_tolerance(ws);
   int* list = ws.decision.list;
@@ -159,14 +159,14 @@ bool least_impulses(Workspace<T>& ws, double still, Stops&& stops, int* kept = n
   bool needed = false;
   for (int a = 0; a < n; ++a) {
     const double slip = value(rate_of(ws, ne + list[a]));
-    needed = needed || slip * free_way(ws, list[a]) < -tolerance || (stops(list[a]) && abs(slip) > still);
+    needed = needed || slip * free_way(ws, list[a]) < -tolerance || (stops[list[a]] != 0 && abs(slip) > still);
   }
   if (!needed) return true;
   BoundedProblem<T> p = gather(ws, list, n);
   T* capacity = ws.problem.capacity;
   for (int a = 0; a < n; ++a) {
     p.gradient[a] = rate_of(ws, ne + list[a]);
-    const bool both = stops(list[a]);
+    const bool both = stops[list[a]] != 0;
     p.lower[a] = both || free_way(ws, list[a]) < 0 ? T(-infinity) : T(0);
     p.upper[a] = both || free_way(ws, list[a]) > 0 ? T(infinity) : T(0);
     capacity[a] = T(infinity);
@@ -179,9 +179,17 @@ bool least_impulses(Workspace<T>& ws, double still, Stops&& stops, int* kept = n
   for (int a = 0; a < n; ++a) {
     // a freewheel that an impulse has closed is locked, one that it has left behind overruns
     const bool stopped = abs(value(p.slope[a])) <= tolerance;
-    if (stopped && (stops(list[a]) || value(p.x[a]) * free_way(ws, list[a]) > 0)) ws.contact.mode[list[a]] = locked;
+    if (stopped && (stops[list[a]] != 0 || value(p.x[a]) * free_way(ws, list[a]) > 0)) ws.contact.mode[list[a]] = locked;
   }
   return true;
+}
+
+/// The same of contacts for which stops(c) holds before.
+template <class T, class Stops>
+bool least_impulses(Workspace<T>& ws, double still, Stops&& stops, int* kept = nullptr) {
+  int* stopped = ws.decision.candidate;
+  for (int c = 0; c < ws.sys.contacts; ++c) stopped[c] = stops(c) ? 1 : 0;
+  return stop_by_impulses(ws, still, stopped, kept);
 }
 
 /// Impulses at a decision: contacts declared locked, at the start, and freewheels that would run backward. Of contacts

@@ -108,9 +108,17 @@ bool may_stick(const Workspace<T>& ws, int c) {
   return !ws.contact.compliant[c] || contact_one_way(ws, c) || ws.contact.fault[c] == cannot_unlock;
 }
 
-/// Time derivative of the load of a contact, by that of each of its inputs: slope(reference).
-template <class T, class Slope>
-T load_slope(const Workspace<T>& ws, int c, Slope&& slope) {
+/// Time derivative of what a reference reads, of signals some time later.
+template <class T>
+[[gnu::noinline]] T slope_of_input(const Workspace<T>& ws, int ref, double later) {
+  const std::int64_t i = ws.sys.input_refs[ref];
+  const bool varies = later > 0 && i < ws.sys.inputs && ws.in.signal[i].varying;
+  return varies ? T(signal_slope(ws, int(i), ws.time + later)) : ws.in.du[ref] + ws.in.shared_slope[ref];
+}
+
+/// Time derivative of the load of a contact, with the slopes of signals some time later.
+template <class T>
+T load_slope(const Workspace<T>& ws, int c, double later = 0) {
   const auto& sys = ws.sys;
   return visit_contact(sys.contact_kind[c], [&](auto tag) {
     using E = typename decltype(tag)::type;
@@ -118,14 +126,10 @@ T load_slope(const Workspace<T>& ws, int c, Slope&& slope) {
     for (int i = 0; i < E::inputs; ++i) {
       const int ref = sys.contact_input[c] + i;
       input[i] = Dual<T, 1>(ws.in.u[ref]);
-      input[i].d[0] = slope(ref);
+      input[i].d[0] = slope_of_input(ws, ref, later);
     }
     return contact_load(sys.contact_kind[c], ws.params + sys.contact_param[c], &input[0], points_of(ws)).d[0];
   });
-}
-template <class T>
-T load_slope(const Workspace<T>& ws, int c) {
-  return load_slope(ws, c, [&](int ref) { return ws.in.du[ref] + ws.in.shared_slope[ref]; });
 }
 
 /// What a load that is zero now is a nanosecond later, by its slope there: now that of a load which touches zero is
@@ -133,12 +137,7 @@ T load_slope(const Workspace<T>& ws, int c) {
 template <class T>
 T load_soon(const Workspace<T>& ws, int c) {
   constexpr double soon = 1e-9;
-  auto slope = [&](int ref) {
-    const std::int64_t i = ws.sys.input_refs[ref];
-    const bool varies = i < ws.sys.inputs && ws.in.signal[i].varying;
-    return varies ? T(signal_slope(ws, int(i), ws.time + soon)) : ws.in.du[ref] + ws.in.shared_slope[ref];
-  };
-  return T(soon) * load_slope(ws, c, slope);
+  return T(soon) * load_slope(ws, c, soon);
 }
 
 /// Whether the load of a contact bends over time, so that it may dip between two instants.

@@ -132,7 +132,7 @@ bool end_bounces(Workspace<T>& ws, int n, double tolerance) {
     if (-blocked_way(ws, c) * value(rate_of(ws, int(ws.sys.elements) + c)) <= tolerance) continue;
     rests[c] = ws.contact.struck[c] = 1, ws.contact.met_at[c] = ws.time;
   }
-  return least_impulses(ws, 0.0, [&](int c) { return rests[c] != 0; });
+  return stop_by_impulses(ws, 0.0, rests, nullptr);
 }
 
 /// One impact of all that close, with those that rest: each is left at least at its rebound. `all`: without rebound.

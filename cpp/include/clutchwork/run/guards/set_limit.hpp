@@ -21,6 +21,34 @@ T round_off(const Workspace<T>& ws) {
   return smaller(ws.step_start.noise[0], T(1e-12 * torque_size(ws)));
 }
 
+/// Largest torque of the independent contacts of a set.
+template <class T>
+double largest_load(const Workspace<T>& ws, int k, const T* torque) {
+  double most = 0;
+  const int first = ws.held.set_first[k];
+  for (int i = first; i < first + ws.held.set_rank[k]; ++i)
+    most = larger(most, abs(value(torque[ws.held.set_place[i]])));
+  return most;
+}
+
+/// What set k has left of its limit load inside of a step, as a share of the load or as a torque; factors beyond `most`
+/// count as that.
+template <class Form>
+struct RoomInside {
+  Form& form;
+  Step<Form>& step;
+  int k;
+  double most = ample;
+  bool as_torque = false;
+
+  [[gnu::noinline]] double operator()(double s) const {
+    auto& ws = form.ws;
+    torques_at(form, step, s);
+    const double room = value(set_room(ws, k, ws.observed.carried, round_off(ws), ws.loads.now, most));
+    return as_torque ? room * largest_load(ws, k, ws.observed.carried) : room;
+  }
+};
+
 /// Lines of the bounds by which the set that was looked at last holds, as one number.
 template <class T>
 std::uint64_t lines_chosen(const Workspace<T>& ws) {
@@ -60,10 +88,7 @@ template <class Form>
 [[gnu::noinline]] void find_loaded_limit(Form& form, Step<Form>& step, int k, double least, Hit& hit) {
   auto& ws = form.ws;
   fit(form, step);
-  auto f = [&](double s) {
-    torques_at(form, step, s);
-    return value(set_room(ws, k, ws.observed.carried, round_off(ws), ws.loads.now));
-  };
+  const RoomInside<Form> f{form, step, k};
   const double before = value(ws.step_start.room[k]);
   hit.take(first_at_no_load(form, step, f, before, hit.s), k);
   double middle = -1;
@@ -79,12 +104,8 @@ template <class Form>
 [[gnu::noinline]] void find_limit_beside(Form& form, Step<Form>& step, int k, Hit& hit) {
   constexpr double most = 1e6;
   constexpr int rounds = 30;
-  auto& ws = form.ws;
   fit(form, step);
-  auto f = [&](double s) {
-    torques_at(form, step, s);
-    return value(set_room(ws, k, ws.observed.carried, round_off(ws), ws.loads.now, most));
-  };
+  const RoomInside<Form> f{form, step, k, most};
   const double limit = hit.none() ? 1.0 : hit.s;
   hit.take(first_dip(f, f(0), f(limit), limit, rounds), k);
 }
@@ -98,27 +119,13 @@ struct SetLimit : OwnScale {
   static bool watches(const Workspace<T>& ws) {
     return ws.held.n_sets > 0;
   }
-  /// Largest torque of the independent contacts of a set.
-  template <class T>
-  static double largest_load(const Workspace<T>& ws, int k, const T* torque) {
-    double most = 0;
-    const int first = ws.held.set_first[k];
-    for (int i = first; i < first + ws.held.set_rank[k]; ++i)
-      most = larger(most, abs(value(torque[ws.held.set_place[i]])));
-    return most;
-  }
   /// Where a set gives way of which the load of a member bends, by what it has left of its limit load [N m]: where that
   /// member touches zero the set may hold more than what counts as ample at all samples around, which say nothing then.
   template <class Form>
   [[gnu::noinline]] static void find_bending_limit(Form& form, Step<Form>& step, int k, Hit& hit) {
     constexpr double most = 1e12;
-    auto& ws = form.ws;
     fit(form, step);
-    auto f = [&](double s) {
-      torques_at(form, step, s);
-      const double room = value(set_room(ws, k, ws.observed.carried, round_off(ws), ws.loads.now, most));
-      return room * largest_load(ws, k, ws.observed.carried);
-    };
+    const RoomInside<Form> f{form, step, k, most, true};
     hit.take(first_crossing(f, f(0), f(1), hit.s), k);
   }
   /// Call f for each set under next to no load with a member that holds one way alone.
@@ -164,12 +171,8 @@ struct SetLimit : OwnScale {
       }
       if (bends || (!ends_say_little(ws, hit) && smaller(before, after) > change)) continue;
       fit(form, step);
-      auto f = [&](double s) {
-        torques_at(form, step, s);
-        return value(set_room(ws, k, ws.observed.carried, round_off(ws), ws.loads.now));
-      };
-      const double s = first_crossing(f, before, after, hit.s);
-      hit.take(s, k);
+      const RoomInside<Form> f{form, step, k};
+      hit.take(first_crossing(f, before, after, hit.s), k);
     }
     if (hit.what == hit.asked) see_held(form, step, hit);
   }
@@ -177,11 +180,7 @@ struct SetLimit : OwnScale {
   template <class Form>
   [[gnu::noinline]] static void see_held(Form& form, Step<Form>& step, Hit& hit) {
     constexpr double bit = 4e-16, farthest = 1e-9;
-    auto& ws = form.ws;
-    auto room_at = [&](double s) {
-      torques_at(form, step, s);
-      return value(set_room(ws, hit.index, ws.observed.carried, round_off(ws), ws.loads.now));
-    };
+    const RoomInside<Form> room_at{form, step, hit.index};
     if (room_at(hit.s) > -0.5) return;
     for (double back = bit; back <= farthest && back < hit.s; back *= 2) {
       const double room = room_at(hit.s - back);

@@ -155,22 +155,19 @@ struct TorqueLimit {
     }
     if (n == 0) return;
     fit(form, step);
-    // each alone: one that has nothing left all the time hides where another dips
-    int who = watched[0];
+    int first = 0, count = n, who = watched[0], found = watched[0];
+    auto f = [&](double x) { return least_margin(form, step, x, watched + first, count, who); };
     double s = -1;
-    for (int i = 0; i < n; ++i) {
-      const int a = watched[i];
+    // each alone: one that has nothing left all the time hides where another dips
+    for (count = 1; first < n; ++first) {
+      const int a = watched[first];
       double before, after;
       holds_on(ws, a, step.h, before, after);
       before += more_noise(ws, a, ws.step_start.capacity[a]), after += more_noise(ws, a, ws.step_end.capacity[a]);
-      auto margin_of = [&](double x) {
-        torques_at(form, step, x);
-        return margin_seen(ws, a);
-      };
-      const double at = first_crossing(margin_of, before, after, s < 0 ? hit.s : s);
-      if (at >= 0 && (s < 0 || at < s)) s = at, who = a;
+      const double at = first_crossing(f, before, after, s < 0 ? hit.s : s);
+      if (at >= 0 && (s < 0 || at < s)) s = at, found = a;
     }
-    auto f = [&](double x) { return least_margin(form, step, x, watched, n, who); };
+    first = 0, count = n, who = found;
     if constexpr (Form::full) {
       const double sharp = first_at_no_load(form, step, f, m0, s < 0 ? hit.s : s);
       if (sharp >= 0) s = sharp;
