@@ -111,9 +111,11 @@ bool may_stick(const Workspace<T>& ws, int c) {
 /// Time derivative of what a reference reads, of signals some time later.
 template <class T>
 [[gnu::noinline]] T slope_of_input(const Workspace<T>& ws, int ref, double later) {
-  const std::int64_t i = ws.sys.input_refs[ref];
-  const bool varies = later > 0 && i < ws.sys.inputs && ws.in.signal[i].varying;
-  return varies ? T(signal_slope(ws, int(i), ws.time + later)) : ws.in.du[ref] + ws.in.shared_slope[ref];
+  if constexpr (!has_lanes<T>) {
+    const std::int64_t i = ws.sys.input_refs[ref];
+    if (later > 0 && i < ws.sys.inputs && ws.in.signal[i].varying) return signal_slope(ws, int(i), ws.time + later);
+  }
+  return ws.in.du[ref] + ws.in.shared_slope[ref];
 }
 
 /// Time derivative of the load of a contact, with the slopes of signals some time later.
