@@ -270,6 +270,15 @@ def test_a_number_that_is_zero_has_no_size_that_hides_what_a_little_more_does(rt
     assert found.problems == ()
 
 
+def test_a_value_that_is_zero_hides_nothing_of_others():
+    """A power that is zero throughout has no size by which one pascal would be little."""
+    d, by = pressed_by(pressure=0.0), "c.pressure"
+    alone = cw.differentiable(d, 1.0, of="a.speed", by=by, side="right").gradient().matrix
+    beside = cw.differentiable(d, 1.0, of=["a.speed", cw.maximum("c.power")], by=by, side="right").gradient().matrix
+    assert alone[0, 0] < 0.0
+    np.testing.assert_allclose(beside[0], alone[0], rtol=1e-9)
+
+
 def test_a_pressure_of_a_gearbox_that_is_zero():
     """Of an open brake, which moves the speeds by a ten-millionth of themselves for a pascal."""
     d = cw.Driveline("shift")

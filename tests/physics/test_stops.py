@@ -304,3 +304,26 @@ def test_bounces_that_a_brake_makes_smaller_end(law: cw.Law, push: float) -> Non
     assert gaps[1:3] / gaps[:2] == pytest.approx([ratio, ratio], rel=1e-3)
     assert times[-1] == pytest.approx(times[1] + gaps[1] / (1.0 - ratio), abs=1e-8)
     assert all(at_end(run, f"{shaft}.speed") == 0.0 for shaft in ("left", "wheel", "right"))
+
+
+@pytest.mark.parametrize("seed", range(70, 100))
+def test_flanks_push_their_shafts_and_do_not_pull(seed: int) -> None:
+    """Stars of shafts at the flanks of elastic plays, which strike each other several times at one instant."""
+    rng = np.random.default_rng([seed, 16])
+    d = cw.Driveline("star")
+    ends = int(rng.integers(2, 4))
+    speeds, inertias = rng.integers(-9, 10, ends + 1).astype(float), 10.0 ** rng.uniform(-1.0, 0.5, ends + 1)
+    shafts = [d.shaft(f"s{k}", inertia=inertias[k], speed=speeds[k]) for k in range(ends + 1)]
+    sides = rng.choice([-1.0, 1.0], ends)
+    for k, side in enumerate(sides, start=1):
+        bounce = float(rng.choice([0.0, 0.5, 1.0]))
+        twist = 0.005 * float(side)
+        play = cw.Backlash(
+            f"p{k}", base=shafts[0], follower=shafts[k], gap=0.01, restitution=bounce, initial_twist=twist
+        )
+        d.add(play)
+    run = d.simulate(1e-6)
+    after = np.array([run[f"s{k}.speed"][0] for k in range(ends + 1)])
+    # at its upper end a follower is pushed down
+    assert np.all(-sides * (after - speeds)[1:] >= -1e-9 * 10.0)
+    assert inertias @ after == pytest.approx(inertias @ speeds, abs=1e-9 * 10.0 * inertias.sum())

@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from clutchwork.base.classes import dataclass
 from clutchwork.gradients.bends import spread
 from clutchwork.gradients.doubts import Doubt
-from clutchwork.gradients.lines import Line
+from clutchwork.gradients.lines import LEAST, Line
 from clutchwork.gradients.task import GradientTask
 
 Array = NDArray[np.float64]
@@ -193,9 +193,9 @@ class Settling:
     def _shares(self, derivatives: Array, numbers: NDArray[np.intp] | slice) -> Array:
         """What numbers change by, of their size, for one of their unit.
 
-        One of no known size has that by which it changes any value by all of itself.
+        One of no known size has that by which it changes any value by all of itself, but for those that are zero.
         """
-        known = self._line_sizes > 0.0
+        known = self._line_sizes > LEAST
         effects = np.nan_to_num(derivatives[known] / self._line_sizes[known, None]).max(axis=0, initial=0.0)
         found: Array = np.where(self.unsized[numbers], np.clip(effects, 1.0 / LARGEST, 1.0), 1.0) / self.sizes[numbers]
         return found

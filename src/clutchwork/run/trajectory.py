@@ -78,8 +78,9 @@ class Trajectory(Exports):
     def state(self, at: Number | None = None) -> State:
         """What the run is at a time [s, or with a unit], by default at its end; `simulate(start=state)` goes on.
 
-        The run is repeated up to there; at an event it is the right limit. Where a step of the solver ends at that time
-        the motion that follows is that of this run, bit for bit, else within the tolerance.
+        The run is repeated up to there; at an event it is the right limit, before what controllers do then. Where a
+        step of the solver ends at that time the motion that follows is that of this run, bit for bit, else within the
+        tolerance.
         """
         from clutchwork.results.state import instant
 

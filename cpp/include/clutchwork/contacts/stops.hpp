@@ -110,28 +110,44 @@ bool list_struck(const Workspace<T>& ws, bool all, double tolerance, int* list, 
   return closes;
 }
 
-/// Whether all that closes are stops that were left no further than round-off.
+/// Stops that are at an end and do not leave it are closed, all others open.
+template <class T>
+void close_stops(Workspace<T>& ws) {
+  const Real<T> tolerance = slip_tolerance(ws);
+  for (int c = 0; c < ws.sys.contacts; ++c) {
+    if (!is_stop(ws, c)) continue;
+    const int side = side_at(ws, c);
+    const bool leaves = -side * value(rate_of(ws, int(ws.sys.elements) + c)) > tolerance;
+    ws.contact.side[c] = leaves ? 0 : side;
+    ws.contact.loaded[c] = ws.contact.side[c] != 0;
+  }
+}
+
+/// Whether all that closes are stops that were left no further than round-off since an instant before, and close slowly.
 template <class T>
 bool fades(const Workspace<T>& ws, int n, double tolerance) {
   for (int a = 0; a < n; ++a) {
     const int c = ws.decision.list[a];
     const double closing = -blocked_way(ws, c) * value(rate_of(ws, int(ws.sys.elements) + c));
-    if (closing > tolerance && !(is_stop(ws, c) && returns_unseen(ws, c, closing))) return false;
+    if (closing <= tolerance) continue;
+    const bool left = is_stop(ws, c) && ws.time > ws.contact.met_at[c];
+    if (!left || closing > 1e6 * tolerance || !returns_unseen(ws, c, closing)) return false;
   }
   return true;
 }
 
-/// The end of bounces that friction makes ever smaller: what closes comes to rest, and what is locked stays so.
-/// docs/theory/play.md, rule 2
+/// The end of bounces that have become so small: what closes comes to rest, beside what is locked, which stays so. Stops
+/// only push. docs/theory/play.md, rule 2
 template <class T>
 bool end_bounces(Workspace<T>& ws, int n, double tolerance) {
   int* rests = ws.decision.candidate;
-  for (int c = 0; c < ws.sys.contacts; ++c) rests[c] = ws.contact.mode[c] == locked;
+  for (int c = 0; c < ws.sys.contacts; ++c) rests[c] = ws.contact.mode[c] == locked && !contact_one_way(ws, c);
   for (int a = 0; a < n; ++a) {
     const int c = ws.decision.list[a];
     if (-blocked_way(ws, c) * value(rate_of(ws, int(ws.sys.elements) + c)) <= tolerance) continue;
-    rests[c] = ws.contact.struck[c] = 1, ws.contact.met_at[c] = ws.time;
+    ws.contact.struck[c] = 1, ws.contact.met_at[c] = ws.time;
   }
+  close_stops(ws);
   return stop_by_impulses(ws, 0.0, rests, nullptr);
 }
 
@@ -159,19 +175,6 @@ bool impact(Workspace<T>& ws, int n, bool all, double tolerance) {
   for (int a = 0; a < n; ++a) p.gradient[a] += back[a], p.slope[a] += back[a];
   apply_impulses(ws, p, list);
   return true;
-}
-
-/// Stops that are at an end and do not leave it are closed, all others open.
-template <class T>
-void close_stops(Workspace<T>& ws) {
-  const Real<T> tolerance = slip_tolerance(ws);
-  for (int c = 0; c < ws.sys.contacts; ++c) {
-    if (!is_stop(ws, c)) continue;
-    const int side = side_at(ws, c);
-    const bool leaves = -side * value(rate_of(ws, int(ws.sys.elements) + c)) > tolerance;
-    ws.contact.side[c] = leaves ? 0 : side;
-    ws.contact.loaded[c] = ws.contact.side[c] != 0;
-  }
 }
 
 /// Closed stops are exactly at their ends: round-off of the steps since then does not tell that one has left it.

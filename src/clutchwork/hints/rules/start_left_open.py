@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import re
 from collections.abc import Iterator
 from typing import TYPE_CHECKING
 
@@ -16,14 +15,19 @@ if TYPE_CHECKING:
 NAME = "start left open"
 
 
+def _named(system: System, text: str) -> tuple[str, ...]:
+    """Shafts and masses that a text names."""
+    return tuple(node.name for node in system.nodes if f' "{node.name}"' in text)
+
+
 @model_rule(NAME)
 def start_left_open(system: System) -> Iterator[Hint]:
     """A shaft that turns at the start because others are at rest, as a note of the assembly has it."""
     for note in system.notes:
         if LEFT_OPEN in note:
             told, _, others = note.partition(LEFT_OPEN)
-            (name,), resting = re.findall(r'"([^"]*)"', told), re.findall(r'"([^"]*)"', others)
+            moving, resting = _named(system, told), _named(system, others)
             speed = told.rpartition(": starts at ")[2]
             message = f"starts at {speed} because what was added before it starts at rest ({', '.join(resting)})"
             remedy = "give the speed of one more of these shafts, which the given ones leave open"
-            yield Hint(NAME, (name, *resting), message, remedy)
+            yield Hint(NAME, (*moving, *resting), message, remedy)

@@ -72,10 +72,12 @@ struct LoadZero : OfContact {
     const double size = ws.guard.load_size[hit.index], usual = 1e3 * load_at_rest(ws, hit.index) / ws.options.atol;
     return larger(size > 0 ? size : usual, 1e-300);
   }
-  /// Whether a load has died away, so that its errors alone place where it passes zero. docs/theory/gradients.md (3)
+  /// Whether a load that follows states has died away: errors of the steps alone place where it passes zero.
+  /// docs/theory/gradients.md (3)
   template <class T>
-  static bool has_faded(const Workspace<T>& ws, double rate, double scale) {
-    return abs(rate) * larger(ws.moved.span, 1e-9) <= 1e-6 * scale;
+  static bool has_faded(const Workspace<T>& ws, const Hit& hit, double rate) {
+    constexpr double tolerances = 100;
+    return abs(rate) * ws.moved.span <= 1e3 * tolerances * load_at_rest(ws, hit.index);
   }
   template <class Phase>
   static void settle(Phase& phase, const Hit& hit) {

@@ -130,7 +130,7 @@ struct TorqueLimit {
     auto& ws = form.ws;
     int* watched = ws.guard.limit;
     int n = 0;
-    double m0 = infinity;
+    double m0 = infinity, m1 = infinity;
     for (int a = 0; a < ws.held.n; ++a) {
       if (is_rigid(ws, ws.held.contact[a])) {
         const double s = rigid_departure(form, step, a, hit.s);
@@ -152,22 +152,24 @@ struct TorqueLimit {
       }
       watched[n++] = a;
       m0 = smaller(m0, before + more_noise(ws, a, ws.step_start.capacity[a]));
+      m1 = smaller(m1, after + more_noise(ws, a, ws.step_end.capacity[a]));
     }
     if (n == 0) return;
     fit(form, step);
-    int first = 0, count = n, who = watched[0], found = watched[0];
+    int first = 0, count = n, who = watched[0];
     auto f = [&](double x) { return least_margin(form, step, x, watched + first, count, who); };
-    double s = -1;
-    // each alone: one that has nothing left all the time hides where another dips
-    for (count = 1; first < n; ++first) {
+    double s = first_crossing(f, m0, m1, hit.s);
+    // a load that dips hides behind what has next to nothing left all the time: each of these alone
+    for (count = 1; first < n && n > 1; ++first) {
       const int a = watched[first];
+      if (!load_bends(ws, ws.held.contact[a])) continue;
       double before, after;
       holds_on(ws, a, step.h, before, after);
       before += more_noise(ws, a, ws.step_start.capacity[a]), after += more_noise(ws, a, ws.step_end.capacity[a]);
       const double at = first_crossing(f, before, after, s < 0 ? hit.s : s);
-      if (at >= 0 && (s < 0 || at < s)) s = at, found = a;
+      if (at >= 0 && (s < 0 || at < s)) s = at;
     }
-    first = 0, count = n, who = found;
+    first = 0, count = n;
     if constexpr (Form::full) {
       const double sharp = first_at_no_load(form, step, f, m0, s < 0 ? hit.s : s);
       if (sharp >= 0) s = sharp;
