@@ -193,7 +193,7 @@ class Settling:
     def _shares(self, derivatives: Array, numbers: NDArray[np.intp] | slice) -> Array:
         """What numbers change by, of their size, for one of their unit.
 
-        One of no known size has that by which it changes any value by all of itself, but for those that are zero.
+        One of no known size has that by which it changes any value that is not zero by all of itself.
         """
         known = self._line_sizes > LEAST
         effects = np.nan_to_num(derivatives[known] / self._line_sizes[known, None]).max(axis=0, initial=0.0)

@@ -202,14 +202,12 @@ def _grows(signal: Signal) -> bool:
 
 def _never_presses(loads: Iterable[float], at: At) -> Iterator[Problem]:
     """A load that is below zero and never above: a signal may dip below zero by an offset."""
-    least = 0.0
-    for load in loads:
-        if load > 0.0:
-            return
-        least = min(least, load)
-    if least < 0.0:
+    found = list(loads)
+    least, most = min(found, default=0.0), max(found, default=0.0)
+    if least < 0.0 >= most:
+        size = f"{least:g}" if least == most else f"{least:g} to {most:g}"
         message, remedy = "never presses the contact: a negative load counts as zero", "give zero or a positive value"
-        yield at.problem(message, f"{least:g} {at.unit}".removesuffix(" 1"), remedy)
+        yield at.problem(message, f"{size} {at.unit}".removesuffix(" 1"), remedy)
 
 
 def _is_measured(value: Any) -> bool:

@@ -15,8 +15,8 @@ if TYPE_CHECKING:
 NAME = "start left open"
 
 
-def _named(system: System, text: str) -> tuple[str, ...]:
-    """Shafts and masses that a text names."""
+def _named(system: System, note: str) -> tuple[str, ...]:
+    """Shafts and masses that a note names."""
     return tuple(node.name for node in system.nodes if f' "{node.name}"' in text)
 
 
