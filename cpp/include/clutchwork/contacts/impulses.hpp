@@ -179,7 +179,8 @@ template <class T>
   for (int a = 0; a < n; ++a) {
     // a freewheel that an impulse has closed is locked, one that it has left behind overruns
     const bool stopped = abs(value(p.slope[a])) <= tolerance;
-    if (stopped && (stops[list[a]] != 0 || value(p.x[a]) * free_way(ws, list[a]) > 0)) ws.contact.mode[list[a]] = locked;
+    if (stopped && (stops[list[a]] != 0 || value(p.x[a]) * free_way(ws, list[a]) > 0))
+      ws.contact.mode[list[a]] = locked;
   }
   return true;
 }

@@ -175,9 +175,8 @@ T usable_capacity(const Workspace<T>& ws, int c, int direction) {
   const auto& sys = ws.sys;
   if (ws.contact.compliant[c] || ws.contact.fault[c] == cannot_unlock || value(load_of(ws, c)) > 0)
     return capacity_of(ws, c, direction);
-  return larger(load_soon(ws, c), T(0)) *
-         law_hold(sys.contact_law[c], ws.params + sys.contact_law_param[c], ws.in.u + sys.contact_law_input[c],
-                  points_of(ws));
+  return larger(load_soon(ws, c), T(0)) * law_hold(sys.contact_law[c], ws.params + sys.contact_law_param[c],
+                                                   ws.in.u + sys.contact_law_input[c], points_of(ws));
 }
 
 /// Tolerance under which a slip counts as zero. docs/theory/contacts.md (14)

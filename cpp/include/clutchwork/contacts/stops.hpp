@@ -123,7 +123,8 @@ void close_stops(Workspace<T>& ws) {
   }
 }
 
-/// Whether all that closes are stops that were left no further than round-off since an instant before, and close slowly.
+/// Whether all that closes are stops that were left no further than round-off since an instant before, and close
+/// slowly.
 template <class T>
 bool fades(const Workspace<T>& ws, int n, double tolerance) {
   for (int a = 0; a < n; ++a) {
@@ -136,8 +137,8 @@ bool fades(const Workspace<T>& ws, int n, double tolerance) {
   return true;
 }
 
-/// The end of bounces that have become so small: what closes comes to rest, beside what is locked, which stays so. Stops
-/// only push. docs/theory/play.md, rule 2
+/// The end of bounces that have become so small: what closes comes to rest, beside what is locked, which stays so.
+/// Stops only push. docs/theory/play.md, rule 2
 template <class T>
 bool end_bounces(Workspace<T>& ws, int n, double tolerance) {
   int* rests = ws.decision.candidate;

@@ -17,7 +17,7 @@ NAME = "start left open"
 
 def _named(system: System, note: str) -> tuple[str, ...]:
     """Shafts and masses that a note names."""
-    return tuple(node.name for node in system.nodes if f' "{node.name}"' in text)
+    return tuple(node.name for node in system.nodes if f' "{node.name}"' in note)
 
 
 @model_rule(NAME)

@@ -37,6 +37,16 @@ double least_margin(Form& form, Step<Form>& step, double s, const int* watched, 
   return least;
 }
 
+/// Where the margin f of one locked contact passes zero before `limit`, else what was found.
+template <class T, class F>
+double first_alone(const Workspace<T>& ws, F&& f, int a, double h, double limit, double found) {
+  double before, after;
+  holds_on(ws, a, h, before, after);
+  before += more_noise(ws, a, ws.step_start.capacity[a]), after += more_noise(ws, a, ws.step_end.capacity[a]);
+  const double at = first_crossing(f, before, after, limit);
+  return at >= 0 && (found < 0 || at < found) ? at : found;
+}
+
 /// Where the prescribed speeds on both sides of a held contact part; -1: not before `limit`.
 template <class Form>
 double rigid_departure(Form& form, Step<Form>& step, int a, double limit) {
@@ -161,13 +171,8 @@ struct TorqueLimit {
     double s = first_crossing(f, m0, m1, hit.s);
     // a load that dips hides behind what has next to nothing left all the time: each of these alone
     for (count = 1; first < n && n > 1; ++first) {
-      const int a = watched[first];
-      if (!load_bends(ws, ws.held.contact[a])) continue;
-      double before, after;
-      holds_on(ws, a, step.h, before, after);
-      before += more_noise(ws, a, ws.step_start.capacity[a]), after += more_noise(ws, a, ws.step_end.capacity[a]);
-      const double at = first_crossing(f, before, after, s < 0 ? hit.s : s);
-      if (at >= 0 && (s < 0 || at < s)) s = at;
+      if (load_bends(ws, ws.held.contact[watched[first]]))
+        s = first_alone(ws, f, watched[first], step.h, s < 0 ? hit.s : s, s);
     }
     first = 0, count = n;
     if constexpr (Form::full) {
