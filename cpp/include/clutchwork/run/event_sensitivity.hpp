@@ -389,7 +389,7 @@ T hit_shift(Form& form, Step<Form>& step, const Hit& hit, const T* velocity) {
   }
   const double rate = guard_rate<G>(form, step, hit, velocity);
   bool moves = rate != 0;
-  if constexpr (requires { G::has_faded(ws, hit, rate); }) moves = moves && !G::has_faded(ws, hit, rate);
+  if constexpr (requires { G::has_faded(ws, hit, rate, scale); }) moves = moves && !G::has_faded(ws, hit, rate, scale);
   const T shift = moves ? without_value(guard) * T(-1 / rate) : T(0);
   note_graze(ws, hit.what, component, abs(rate) / scale, shift);
   return shift;

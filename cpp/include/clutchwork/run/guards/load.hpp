@@ -75,8 +75,9 @@ struct LoadZero : OfContact {
   /// Whether a load that follows states has died away: errors of the steps alone place where it passes zero.
   /// docs/theory/gradients.md (3)
   template <class T>
-  static bool has_faded(const Workspace<T>& ws, const Hit& hit, double rate) {
-    constexpr double tolerances = 100;
+  static bool has_faded(const Workspace<T>& ws, const Hit& hit, double rate, double scale) {
+    constexpr double tolerances = 100, slow = 1e-3;
+    if (abs(rate) > slow * scale) return false;
     return abs(rate) * ws.moved.span <= 1e3 * tolerances * load_at_rest(ws, hit.index);
   }
   template <class Phase>
