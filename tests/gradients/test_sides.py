@@ -363,3 +363,20 @@ def test_no_value_is_looked_at_farther_away_for_another_one():
         for some in (of, [*of, cw.minimum("tq.work")])
     )
     np.testing.assert_array_equal(beside[:3], alone)
+
+
+@pytest.mark.parametrize("filled", [False, True])
+@pytest.mark.parametrize("fill_time", [0.0, 0.1])
+def test_a_piston_whose_command_balances_its_spring(fill_time, filled):
+    """A little more fills it, or presses the plates; a little less empties it, or does nothing."""
+    d = pressed_by(piston={"command": 5e4, "spring": 5e4, "filled": filled, "fill_time": fill_time})
+    wanted = {"of": "p.pressure", "by": ["p.command", "p.spring"], "rtol": 1e-9, "atol": 1e-11}
+    with pytest.raises(cw.NoGradient, match=r"p\.pressure stays at its start value"):
+        cw.differentiable(d, 0.3, **wanted).gradient()
+    left, right = (cw.differentiable(d, 0.3, side=side, **wanted).gradient().matrix[0] for side in ("left", "right"))
+    # it fills or empties evenly, and the pressure nears the command with the lag of 0.05 s
+    evenly, pressed = 0.3 / 0.05, 1.0 - np.exp(-0.3 / 0.05)
+    more = pressed if filled or not fill_time else evenly
+    less = evenly if filled and fill_time else 0.0
+    np.testing.assert_allclose(left, [less, -more], rtol=1e-6)
+    np.testing.assert_allclose(right, [more, -less], rtol=1e-6)

@@ -65,6 +65,18 @@ def at_zero(chart: Chart, slopes: Slopes) -> Iterator[tuple[str, Mask]]:
                 yield why, numbers
 
 
+def at_rest_on_a_border(system: System, starts: Array, end: Array) -> Iterator[tuple[str, int]]:
+    """What is said of states that stay as they begin where equations change, and the place of each.
+
+    Parameters: starts, end, states with which a run begins and ends.
+    """
+    for part, first in _bending(system):
+        for place, state in enumerate(part.own_states(), first):
+            if starts[place] == end[place]:
+                why = f"{part.name}.{state.name} stays at its start value, on whose sides it has other equations"
+                yield why, place
+
+
 def _bending(system: System) -> Iterator[tuple[Component, int]]:
     """Elements and processes whose equations change where a state passes zero, and the place of their first state."""
     places, starts = system.numbered.places, system.arrays

@@ -16,7 +16,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from clutchwork.base.classes import dataclass
-from clutchwork.gradients.beginning import at_border, at_rest, at_zero
+from clutchwork.gradients.beginning import at_border, at_rest, at_rest_on_a_border, at_zero
 from clutchwork.gradients.contact_at_rest import unpressed
 from clutchwork.gradients.grazing import (
     begins_unloaded,
@@ -197,6 +197,8 @@ class Doubts:
         every = np.ones(len(self.lines), dtype=bool)
         for why, numbers in at_border(self.runs.task.system, self.runs.task.parameters, self.point.x):
             yield Doubt(why, every, numbers)
+        for why, numbers in self._resting():
+            yield Doubt(why, every, numbers)
         if chart.stays(*STARTS):
             return
         names = [one.name for one in self.runs.task.parameters]
@@ -207,3 +209,17 @@ class Doubts:
             yield Doubt(why, every, numbers, width=LET_GO)
         for why, numbers in at_zero(chart, self.point.slopes):
             yield Doubt(why, every, numbers, width=BEHIND_THE_START)
+
+    def _resting(self) -> Iterator[tuple[str, Mask]]:
+        """Pistons and others that stay as they begin, and the numbers that would move them at once."""
+        primal, (first, count) = self.run.primal, self.point.chart.words_in("initial_state")
+        row, states = primal.row(primal.t_end), primal.columns["state"]
+        starts, ends = self.point.words[first : first + count], primal.rows[row, states]
+        for why, place in at_rest_on_a_border(self.runs.task.system, starts, ends):
+            moves = primal.functional()
+            moves.add(np.array([row]), np.array([states.start + place]), np.ones((1, 1)))
+            # those that it begins with are looked at for themselves, or take the border with them
+            begins = self.point.slopes.of(np.array([first + place]))[0] != 0.0
+            numbers: Mask = (self.run.slope(moves) != 0.0) & ~begins
+            if numbers.any():
+                yield why, numbers
