@@ -13,10 +13,9 @@ import numpy as np
 import pytest
 
 import clutchwork as cw
-from clutchwork.base import archive
-from clutchwork.run.save import RUN_PARTS, RunFormatError
 from support.amount import seeds
 from support.any_model import agree, model
+from support.continued import brake, same
 from support.random_contacts import driveline as random_contacts
 from support.random_drivelines import T_END, describe
 
@@ -24,13 +23,6 @@ ROOT = Path(__file__).resolve().parents[2]
 MODELS = sorted((ROOT / "examples").glob("*/model.toml"))
 CASES = max(4, len(seeds()) // 12)
 STEPS = {"output": "steps"}
-
-
-def same(one: cw.Trajectory, other: cw.Trajectory) -> None:
-    """Bit for bit, where both are."""
-    assert one.time.tobytes() == other.time.tobytes()
-    assert one.rows.tobytes() == other.rows.tobytes()
-    assert one.events == other.events
 
 
 @pytest.mark.parametrize("seed", range(9200, 9200 + 2 * CASES))
@@ -180,15 +172,6 @@ def test_another_process_continues_with_the_same_bits(tmp_path: Path) -> None:
     assert (other.time, other.row) == (mine.time, mine.row)
     assert other.held == mine.held == {"F1.pressure": 4.9e5}
     assert other.changed == mine.changed == {}
-
-
-def brake(inertia: float = 1.0) -> cw.Driveline:
-    d = cw.Driveline("brake")
-    a = d.shaft("a", inertia=inertia, speed=100.0)
-    table = cw.Table([(0.0, 0.0), (0.2, 1e5), (0.6, 1e5), (0.6, 2e5), (0.8, 2e5)])
-    friction = cw.Coulomb(static=0.3, kinetic=0.25)
-    d.add(cw.Brake("b", shaft=a, friction=friction, gain=1e-3, pressure=table))
-    return d
 
 
 def test_a_run_may_begin_later() -> None:
@@ -490,66 +473,6 @@ def test_exported_c_begins_there_too(tmp_path: Path) -> None:
     assert "#define MODEL_INSTANTS 4\n" in header
     assert 'cw_set_option(run, "t_start", 0.5)' in tables
     assert all("MODEL_T_START" in (folder / name).read_text() for name in ("main.c", "main.cpp"))
-
-
-def test_a_saved_run_that_was_stepped_or_began_at_a_state_is_repeated_bit_for_bit(tmp_path: Path) -> None:
-    sim = cw.Simulator(brake())
-    sim.advance(0.3)
-    sim.set({"b.pressure": 5e4, "b.friction.kinetic": 0.2})
-    sim.advance(0.3)
-    state = sim.save()
-    sim.release("b.pressure")
-    sim.advance(0.2)
-    on = cw.Simulator(brake(), start=state)
-    on.advance(0.1)
-    on.set("b.pressure", 2e4)
-    on.advance(0.1)
-    runs = [sim.run, on.run, brake().simulate(1.0, start=state), cw.Simulator(brake(), start=state).run]
-    for run in runs:
-        run.save(tmp_path / "run")
-        loaded = cw.load_run(tmp_path / "run")
-        same(loaded, run)
-        assert loaded.energy.residual == run.energy.residual
-        loaded.save(tmp_path / "again")
-        times = np.linspace(run.options.t_start, run.t_end, 7)
-        middle = 0.5 * (run.options.t_start + run.t_end)
-        for one in (loaded, cw.load_run(tmp_path / "again")):
-            same(one.at(times), run.at(times))
-            there, wanted = one.state(middle), run.state(middle)
-            assert (there.core, there.row) == (wanted.core, wanted.row)
-            assert (dict(there.held), dict(there.changed)) == (dict(wanted.held), dict(wanted.changed))
-            assert one.state().core == run.state().core
-    late = brake().simulate(1.0, t_start=0.5)
-    late.save(tmp_path / "late")
-    assert cw.load_run(tmp_path / "late").state(0.7).row == late.state(0.7).row
-    assert late.to_pandas(dt=0.2).index.tolist() == pytest.approx([0.5, 0.7, 0.9, 1.0])
-
-
-@pytest.mark.parametrize(
-    ("part", "old", "new"),
-    [
-        ("tape", b'"input"', b'"other"'),
-        ("tape", b'"ends": [', b'"ends": [9.0, '),
-        ("tape", b'"noted": [[', b'"noted": [["x", '),
-        ("tape", b'"held": {}', b'"held": []'),
-        ("tape", b"{", b""),
-        ("start_head", b'"fingerprint": "', b'"fingerprint": "0'),
-        ("start_head", b"{", b""),
-    ],
-)
-def test_damaged_steps_of_a_saved_run_are_refused(tmp_path: Path, part: str, old: bytes, new: bytes) -> None:
-    sim = cw.Simulator(brake())
-    sim.advance(0.3)
-    on = cw.Simulator(brake(), start=sim.save())
-    on.advance(0.1)
-    on.set("b.pressure", 5e4)
-    on.advance(0.3)
-    on.run.save(tmp_path / "run")
-    parts = dict(zip(RUN_PARTS, archive.read(tmp_path / "run", RUN_PARTS), strict=True))
-    assert old in parts[part]
-    archive.write(tmp_path / "bad", {**parts, part: parts[part].replace(old, new, 1)})
-    with pytest.raises(RunFormatError, match="cannot read a run"):
-        cw.load_run(tmp_path / "bad")
 
 
 def launched(engine: float = 100.0, torque: object = 50.0) -> cw.Driveline:
