@@ -380,3 +380,34 @@ def test_a_piston_whose_command_balances_its_spring(fill_time, filled):
     less = evenly if filled and fill_time else 0.0
     np.testing.assert_allclose(left, [less, -more], rtol=1e-6)
     np.testing.assert_allclose(right, [more, -less], rtol=1e-6)
+
+
+def struck(**given):
+    """A shaft that meets another behind a play of 0.1 rad, at 5 rad/s, without rebound."""
+    d = cw.Driveline("struck")
+    a, b = d.shaft("a", inertia=0.2, speed=5.0), d.shaft("b", inertia=0.3)
+    d.add(cw.Backlash("e", base=a, follower=b, gap=0.1, **given))
+    return d, a, b
+
+
+def test_a_stop_without_restitution_bounces_for_a_little_more():
+    """Of what remains of 5 rad/s both share 2 rad/s; a rebound e gives the struck shaft 2 e more."""
+    d, _, _ = struck()
+    wanted = {"of": ["a.speed", "b.speed", "e.heat"], "by": "e.restitution"}
+    with pytest.raises(cw.NoGradient, match=r'with restitution 0, and bounces .* side="right" gives'):
+        cw.differentiable(d, 0.02, **wanted | {"of": "b.speed"}).gradient()
+    found = cw.differentiable(d, 0.02, side="right", **wanted).gradient().matrix[:, 0]
+    np.testing.assert_allclose(found, [-3.0, 2.0, 0.0], rtol=1e-9, atol=1e-9)
+    # before it is struck nothing depends on it
+    before = cw.differentiable(d, 0.005, **wanted).gradient()
+    assert not before.matrix.any()
+    assert before.problems == ()
+
+
+def test_a_stop_that_is_pressed_closes_with_any_small_restitution():
+    d, a, b = struck()
+    d.add(cw.Torque("t", shaft=a, torque=10.0))
+    d.add(cw.Damper("l", base=d.housing, follower=b, damping=0.5))
+    found = cw.differentiable(d, 0.5, of=["a.speed", "b.speed", "e.heat"], by="e.restitution").gradient()
+    np.testing.assert_allclose(found.matrix, 0.0, atol=1e-6)
+    assert found.problems == ()

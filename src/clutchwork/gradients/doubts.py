@@ -29,6 +29,7 @@ from clutchwork.gradients.grazing import (
 )
 from clutchwork.gradients.knots import times_of
 from clutchwork.gradients.lines import Line
+from clutchwork.gradients.no_rebound import held_fast
 from clutchwork.gradients.primal import SAME
 from clutchwork.gradients.runs import Run, RunPoint, Runs
 
@@ -39,6 +40,8 @@ Mask = NDArray[np.bool_]
 STARTS = ("segment_coef", "contact_rate_value", "initial_speed", "initial_state")
 # what lasts less than some nanoseconds is not seen: so many steps beside zero a slip starts, a border, and a state
 LET_GO, AT_THE_START, BEHIND_THE_START = 1e2, 3e2, 1e3
+# below its speed of rest a stop does not bounce: so many steps of its restitution
+REBOUND = 1e3
 
 
 class Doubt(NamedTuple):
@@ -199,6 +202,8 @@ class Doubts:
             yield Doubt(why, every, numbers)
         for why, numbers in self._resting():
             yield Doubt(why, every, numbers)
+        for time, why, numbers in held_fast(chart, words, self.point.slopes, self.run.primal.events):
+            yield Doubt(why, self._up_to(time), numbers, width=REBOUND)
         if chart.stays(*STARTS):
             return
         names = [one.name for one in self.runs.task.parameters]

@@ -142,7 +142,9 @@ def _number(aim: Target, name: str) -> Tunable:
     if spec.what == "option" and aim.path[-1] == "tolerance" and not start:
         # contacts lock at the exact zero of their slip, which no value beside it does
         raise Unfit(f"{name} is 0, the exact zero of the slip, beside which there is another rule; give it a value")
-    size = abs(start) or _size_beside(aim)
+    # between two bounds it is no larger than they are
+    bound = max(map(abs, spec.ends))
+    size = abs(start) or _size_beside(aim) or (bound if bound < inf else 0.0)
     return Tunable(name, name, (), unit_of(aim), start, size or 1.0, *spec.ends, unsized=not size)
 
 
