@@ -411,3 +411,35 @@ def test_a_stop_that_is_pressed_closes_with_any_small_restitution():
     found = cw.differentiable(d, 0.5, of=["a.speed", "b.speed", "e.heat"], by="e.restitution").gradient()
     np.testing.assert_allclose(found.matrix, 0.0, atol=1e-6)
     assert found.problems == ()
+
+
+def coasting(part):
+    """A driven gear or differential whose torque runs backward."""
+    d = cw.Driveline("coasting")
+    if part == "gear":
+        a, b = d.shaft("g", inertia=0.2, speed=6.0), d.shaft("h", inertia=0.3)
+        d.add(cw.LossyGear("p", input=a, output=b, ratio=2.0, efficiency=1.0))
+    else:
+        a, b, c = d.shaft("g", inertia=0.2), d.shaft("l", inertia=0.2, speed=6.0), d.shaft("r", inertia=0.3, speed=4.0)
+        d.add(cw.LimitedSlip("p", carrier=a, left=b, right=c, preload=20.0))
+        d.add(cw.Damper("wheel", base=d.housing, follower=c, damping=0.5))
+    d.add(cw.Torque("t", shaft=a, torque=-50.0))
+    return d
+
+
+@pytest.mark.parametrize(
+    ("part", "by", "side"), [("gear", "efficiency", -1.0), ("slip", "drive", 1.0), ("slip", "coast", 1.0)]
+)
+def test_what_has_no_losses_has_some_for_a_little_less_of_its_efficiency(part, by, side):
+    """Without losses both directions of the power have the same equations, and derivatives of their own."""
+    d = coasting(part)
+    wanted = {"of": ["g.speed", "p.heat"], "by": f"p.{by}", **TIGHT}
+    f = cw.differentiable(d, 0.05, **wanted)
+    values = [f(f.x0 + side * step) for step in (0.0, 1e-4, 2e-4)]
+    true = side * (-3.0 * values[0] + 4.0 * values[1] - values[2]) / 2e-4
+    sided = cw.differentiable(d, 0.05, side="left" if side < 0.0 else "right", **wanted).gradient().matrix[:, 0]
+    np.testing.assert_allclose(sided, true, rtol=1e-5, atol=1e-8)
+    # without asking for a side the same is given, or nothing
+    found = d.simulate(0.05, **TIGHT).gradient(of=wanted["of"], by=["g.inertia", wanted["by"]])
+    given = found.matrix[:2, 1]
+    assert np.isnan(given).all() or np.allclose(given, true, rtol=1e-5, atol=1e-8)

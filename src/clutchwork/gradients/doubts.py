@@ -16,6 +16,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from clutchwork.base.classes import dataclass
+from clutchwork.gradients.at_bounds import held_fast, without_losses
 from clutchwork.gradients.beginning import at_border, at_rest, at_rest_on_a_border, at_zero
 from clutchwork.gradients.contact_at_rest import unpressed
 from clutchwork.gradients.grazing import (
@@ -29,7 +30,6 @@ from clutchwork.gradients.grazing import (
 )
 from clutchwork.gradients.knots import times_of
 from clutchwork.gradients.lines import Line
-from clutchwork.gradients.no_rebound import held_fast
 from clutchwork.gradients.primal import SAME
 from clutchwork.gradients.runs import Run, RunPoint, Runs
 
@@ -199,6 +199,8 @@ class Doubts:
         chart, words = self.point.chart, self.point.words
         every = np.ones(len(self.lines), dtype=bool)
         for why, numbers in at_border(self.runs.task.system, self.runs.task.parameters, self.point.x):
+            yield Doubt(why, every, numbers)
+        for why, numbers in without_losses(chart, words, self.point.slopes):
             yield Doubt(why, every, numbers)
         for why, numbers in self._resting():
             yield Doubt(why, every, numbers)
