@@ -198,18 +198,22 @@ void stay_at_ends(const Workspace<T>& ws, T* state) {
   }
 }
 
+/// What became of the impacts of an instant: none was there, or all of them were the end of bounces.
+enum class Blows { none, faded, felt };
+
 /// Impacts until nothing closes; after many of them, all at once without rebound. False: they have no solution.
 /// docs/theory/play.md, rule 1
 template <class T>
-bool collide_all(Workspace<T>& ws, bool& any) {
+bool collide_all(Workspace<T>& ws, Blows& blows) {
   const Real<T> tolerance = slip_tolerance(ws);
   const int most = 20 + 4 * int(ws.sys.contacts);
   for (int round = 0; round < most + 2; ++round) {
     int n;
     const bool all = round >= most;
     if (!list_struck(ws, all, tolerance, ws.decision.list, n)) return true;
-    if (!(fades(ws, n, tolerance) ? end_bounces(ws, n, tolerance) : impact(ws, n, all, tolerance))) return false;
-    any = true;
+    const bool faded = fades(ws, n, tolerance);
+    if (!(faded ? end_bounces(ws, n, tolerance) : impact(ws, n, all, tolerance))) return false;
+    blows = faded && blows != Blows::felt ? Blows::faded : Blows::felt;
   }
   return true;
 }
@@ -222,15 +226,20 @@ bool lingers(const Workspace<T>& ws, int c, double tolerance) {
   return leaving > tolerance && leaving <= rest_speed(ws, c);
 }
 
-/// Impacts, and stops that these have left below the speed of rest brought to rest. docs/theory/play.md, rule 2
+/// Impacts, and stops that these have left below the speed of rest brought to rest, beside what is locked where bounces
+/// have ended. docs/theory/play.md, rule 2
 template <class T>
 bool collide(Workspace<T>& ws) {
   const Real<T> tolerance = slip_tolerance(ws);
-  bool any = false;
-  if (!collide_all(ws, any)) return false;
-  if (!any) return true;
+  Blows blows = Blows::none;
+  if (!collide_all(ws, blows)) return false;
+  if (blows == Blows::none) return true;
   close_stops(ws);
-  return least_impulses(ws, tolerance, [&](int c) { return lingers(ws, c, tolerance); }) && collide_all(ws, any);
+  auto rests = [&](int c) {
+    const bool held = blows == Blows::faded && ws.contact.mode[c] == locked && !contact_one_way(ws, c);
+    return held || lingers(ws, c, tolerance);
+  };
+  return least_impulses(ws, tolerance, rests) && collide_all(ws, blows);
 }
 
 /// Stops that a decision has not locked are open, unless prescribed speeds drive them on.
