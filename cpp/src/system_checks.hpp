@@ -125,7 +125,7 @@ inline bool process_fits(const System& s, std::int64_t i) {
   visit_process(s.process_kind[i], [&](auto tag) {
     using E = typename decltype(tag)::type;
     good = s.process_param[i] + param_count<E> <= s.n_params && s.process_input[i] + E::inputs <= s.n_input_refs &&
-           s.process_state[i] + E::states <= s.states;
+           s.process_state[i] + E::states <= s.states && s.process_begins[i] < E::inputs;
   });
   visit_process_curves(s.process_kind[i], [&](int at) { good = good && curve_fits(s, s.process_param[i] + at); });
   return good;

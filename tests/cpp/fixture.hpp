@@ -284,7 +284,8 @@ class Model {
     add(contact_kind_), add(contact_param_), add(contact_input_), add(contact_law_), add(contact_law_param_);
     add(contact_law_input_), add(contact_state_), add(contact_tolerance_), add(contact_initial_), add(contact_place_);
     add(flow_kind_), add(flow_param_), add(flow_input_), add(flow_from_), add(flow_to_);
-    add(process_kind_), add(process_param_), add(process_input_), add(process_state);
+    add(process_kind_), add(process_param_), add(process_input_), add(process_state),
+        add(Indices(process_kind_.size(), -1));
     add(heat_direction), add(heat_to_), add(heat_share_), add(shared_scale_), add(shared_offset_);
     add(given), add(Indices(np)), add(resolve(refs_)), add(input_first_), add(input_count_), add(input_period_),
         add(input_value_);

@@ -443,3 +443,26 @@ def test_what_has_no_losses_has_some_for_a_little_less_of_its_efficiency(part, b
     found = d.simulate(0.05, **TIGHT).gradient(of=wanted["of"], by=["g.inertia", wanted["by"]])
     given = found.matrix[:2, 1]
     assert np.isnan(given).all() or np.allclose(given, true, rtol=1e-5, atol=1e-8)
+
+
+def axle(differential):
+    """Two equal wheels, driven alike, behind a differential that does not couple them, until one is braked."""
+    d = cw.Driveline("axle")
+    carrier = d.shaft("carrier", inertia=0.1)
+    left, right = d.shaft("left", inertia=1.0), d.shaft("right", inertia=1.0)
+    d.add(differential("x", carrier=carrier, left=left, right=right))
+    d.add(cw.Torque("drive", shaft=carrier, torque=100.0))
+    for name, wheel in (("on_left", left), ("on_right", right)):
+        d.add(cw.Damper(name, base=d.housing, follower=wheel, damping=20.0))
+    d.add(cw.Torque("braked", shaft=left, torque=cw.Ramp(height=-50.0, duration=0.25, start=0.15)))
+    return d
+
+
+def test_what_is_locked_without_capacity_does_not_hold():
+    """A limited slip without preload is an open differential where its share is zero."""
+    of, by = [cw.at("right.speed", [0.05]), "left.speed", "x.heat"], ["left.inertia", "on_left.damping"]
+    slips = axle(lambda *given, **ports: cw.LimitedSlip(*given, coast=0.1, **ports))
+    found = cw.differentiable(slips, 0.6, of=of, by=by, **TIGHT).gradient().matrix
+    wanted = cw.differentiable(axle(cw.OpenDifferential), 0.6, of=of[:2], by=by, **TIGHT).gradient().matrix
+    np.testing.assert_allclose(found[:2], wanted, rtol=1e-5)
+    np.testing.assert_allclose(found[2], 0.0, atol=1e-9)

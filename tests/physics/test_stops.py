@@ -327,3 +327,24 @@ def test_flanks_push_their_shafts_and_do_not_pull(seed: int) -> None:
     # at its upper end a follower is pushed down
     assert np.all(-sides * (after - speeds)[1:] >= -1e-9 * 10.0)
     assert inertias @ after == pytest.approx(inertias @ speeds, abs=1e-9 * 10.0 * inertias.sum())
+
+
+def test_two_plays_that_open_each_other_come_to_rest() -> None:
+    """A shaft between two flanks and two clutches: each blow opens the other flank, by less each time."""
+    d = cw.Driveline("between")
+    names = {"a": 0.5, "b": 1.0, "c": 0.1, "e": 1.0, "end": 2.0}
+    a, b, c, e, end = (d.shaft(n, inertia=j, speed=1.0 if n == "c" else 0.0) for n, j in names.items())
+    d.add(cw.Backlash("left", base=a, follower=b, gap=0.01))
+    d.add(cw.EndStop("stop", base=b, follower=c, lower=-0.05, upper=0.05))
+    d.add(cw.Backlash("right", base=c, follower=e, gap=0.01))
+    d.add(cw.SpringDamper("spring", base=a, follower=end, stiffness=1000.0, damping=0.0))
+    holding, sliding = cw.Coulomb(static=0.24, kinetic=0.2), cw.Coulomb(static=0.3, kinetic=0.25)
+    d.add(cw.Clutch("held", base=b, follower=end, friction=holding, gain=1.0, normal_force=100.0))
+    d.add(cw.Torque("drive", shaft=a, torque=cw.Ramp(height=20.0, duration=0.1, start=0.15)))
+    load = cw.Sine(amplitude=80.0, frequency=2.0, offset=80.0, phase=np.pi / 2)
+    d.add(cw.Clutch("wave", base=a, follower=c, friction=sliding, gain=1.0, normal_force=load))
+    run = d.simulate(0.5)
+    assert run.status == "done"
+    assert len(run.events) < 1000
+    # of the turnover of some joules, to the tolerance of the run
+    assert abs(run.energy.residual) < 1e-6

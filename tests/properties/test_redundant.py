@@ -227,3 +227,23 @@ def filling(seed: int) -> str:
 @pytest.mark.random
 def test_filling_brakes_on_a_standing_shaft() -> None:
     sweep(filling, amount())
+
+
+@pytest.mark.parametrize(("inertia", "gains", "load"), [(0.1, (50.0, 30.0), 20.0), (0.3, (20.0, 45.0), 12.0)])
+def test_a_row_before_a_set_gives_way_is_in_balance(inertia, gains, load):
+    """Two clutches at their limit beside a freewheel and a flank, which carry the rest: shaft c turns with a."""
+    d = cw.Driveline("loop")
+    a, b, c = (d.shaft(name, inertia=own, speed=10.0) for name, own in (("a", 0.1), ("b", 1.0), ("c", inertia)))
+    law, fading = cw.Coulomb(static=1.0, kinetic=1.0), cw.Ramp(height=-1.0, duration=0.5, offset=1.0)
+    for name, gain in zip(("first", "second"), gains, strict=True):
+        d.add(cw.Clutch(name, base=a, follower=b, friction=law, gain=gain, normal_force=fading, locked=True))
+    d.add(cw.OneWayClutch("freewheel", base=b, follower=c))
+    d.add(cw.Backlash("flank", base=a, follower=c, gap=0.02, initial_twist=-0.01))
+    d.add(cw.Torque("wave", shaft=a, torque=cw.Sine(amplitude=50.0, frequency=2.0)))
+    d.add(cw.Torque("on_c", shaft=c, torque=load))
+    d.add(cw.Torque("on_b", shaft=b, torque=20.0))
+    run = d.simulate(1.0)
+    assert any(event.cause == "torque limit" for event in run.events.of("first"))
+    missing = inertia * run["c.acceleration"] - load - run["freewheel.torque"] - run["flank.torque"]
+    # round-off of torques of some tens of N m
+    assert np.abs(missing).max() < 1e-11 * 50.0

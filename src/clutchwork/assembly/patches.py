@@ -11,6 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from clutchwork.assembly.inputs import plain_signal
+from clutchwork.assembly.shared_states import beginning
 from clutchwork.declare.node import DIRECT, Component, Node, ThermalNode, is_reference
 from clutchwork.declare.schema import WORDS, Role, inputs, specs
 from clutchwork.model.parts import is_open, is_stop, role
@@ -234,6 +235,8 @@ def _start(where: Numbered, old: Component, new: Component) -> Iterator[Patch]:
         first = int(where.arrays["element_state" if kind is Role.TORQUE else "process_state"][number])
         starts = [start / unit for start, unit in zip(states, scales, strict=True)] if kind is Role.PROCESS else states
         yield Patch("initial_state", first, list(starts))
+        if kind is Role.PROCESS and new.begins_with() != old.begins_with():
+            yield Patch("process_begins", number, [beginning(new)])
     if kind is Role.CONTACT:
         before, made = _of_contact(old), _of_contact(new)
         if made != before:

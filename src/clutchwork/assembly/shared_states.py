@@ -54,6 +54,7 @@ class Shared:
             "process_param": [pools.add(process, process.name) for process in self.processes],
             "process_input": [wires.connect(process) for process in self.processes],
             "process_state": first,
+            "process_begins": [beginning(process) for process in self.processes],
             **self._draws(wires),
             "shared_scale": scale,
             "shared_offset": offset,
@@ -72,6 +73,12 @@ class Shared:
                     found.append((place, port, wires.places.processes[owner]))
         columns = zip(*found, strict=True) if found else ([], [], [])
         return dict(zip(("draw_process", "draw_input", "draw_from"), map(list, columns), strict=True))
+
+
+def beginning(process: Component) -> int:
+    """Which input gives the first state of a process at the start, -1: none."""
+    given = process.begins_with()
+    return [given in names for names, _ in inputs(type(process))].index(True) if given else -1
 
 
 def is_state(value: Any) -> bool:

@@ -110,6 +110,7 @@ FIELDS = (
     ("process_param", "i4", ("processes",), "offset into params"),
     ("process_input", "i4", ("processes",), "offset into input_refs"),
     ("process_state", "i4", ("processes",), "its first state among all states"),
+    ("process_begins", "i4", ("processes",), "input whose value that state has at a start later than 0, -1: none"),
     ("heat_direction", "i4", ("heats",), "direction whose heat it is"),
     ("heat_to", "i4", ("heats",), "shared state that takes it"),
     ("heat_share", "f8", ("heats",), "share of it"),

@@ -322,6 +322,10 @@ class Component(Element):
         """The same by what the speed of each shaft is at the start, given or not."""
         return self.initial_states()
 
+    def begins_with(self) -> str:
+        """Of a process: the input whose value its first state has at the start, "" where that is given."""
+        return ""
+
     def state_scales(self) -> tuple[float, ...]:
         """Of a process: the scale of each of its states in the solver, 1 by default.
 

@@ -37,6 +37,9 @@ class RatioActuator(Component):
             return [("initial_ratio", "is missing, and the command says none at the start", "give the ratio there")]
         return []
 
+    def begins_with(self) -> str:
+        return "command" if self.initial_ratio is None else ""
+
     def initial_states(self) -> tuple[float, ...]:
         """Ratio at the start."""
         return (at_start(self.command) if self.initial_ratio is None else self.initial_ratio,)

@@ -39,6 +39,9 @@ class ReliefValve(Opening):
         "Pa", "setting at the start, that of the command by default", default=None, at_least=0.0
     )
 
+    def begins_with(self) -> str:
+        return "command" if self.initial_setting is None and is_known(self.command) else ""
+
     def initial_states(self) -> tuple[float, ...]:
         """Setting at the start [Pa]; no heat yet."""
         return (self.initial_setting if self.initial_setting is not None else command_at_start(self.command), 0.0)
@@ -50,4 +53,9 @@ class ReliefValve(Opening):
 
 def command_at_start(command: Any) -> float:
     """A command [Pa] at the start: of a signal, a number or a process; 0 of anything else."""
-    return at_start(command) if isinstance(command, int | float | Signal | tuple | Component) else 0.0
+    return at_start(command) if is_known(command) else 0.0
+
+
+def is_known(command: Any) -> bool:
+    """Whether a command has a value of its own at the start."""
+    return isinstance(command, int | float | Signal | tuple | Component)

@@ -5,7 +5,7 @@ from __future__ import annotations
 from clutchwork.declare import Role, SignalLike, State, component, option, param, signal
 from clutchwork.elements.bases.oil import CLEARANCE, Opening
 from clutchwork.elements.oil_volume import BAR
-from clutchwork.elements.relief_valve import command_at_start
+from clutchwork.elements.relief_valve import command_at_start, is_known
 
 
 @component(
@@ -45,6 +45,9 @@ class SpoolValve(Opening):
     initial_pilot: float | None = option(
         "Pa", "pilot pressure at the start, that of the command by default", default=None
     )
+
+    def begins_with(self) -> str:
+        return "command" if self.initial_pilot is None and is_known(self.command) else ""
 
     def initial_states(self) -> tuple[float, ...]:
         """Pilot pressure at the start [Pa]; no heat yet."""

@@ -13,10 +13,12 @@ from clutchwork.declare.schema import specs
 from clutchwork.gradients.grazing import AT, IMPACT
 from clutchwork.model.parts import is_stop
 from clutchwork.model.structure import follows_load
+from clutchwork.results.forms import LOCKED
 
 if TYPE_CHECKING:
     from clutchwork.assembly.system import System
     from clutchwork.declare.node import Component
+    from clutchwork.gradients.primal import Primal
     from clutchwork.gradients.words import Chart, Slopes
 
 Array = NDArray[np.float64]
@@ -57,6 +59,17 @@ def without_losses(chart: Chart, words: Array, slopes: Slopes) -> Iterator[tuple
         if numbers.any():
             why = f"{contact.name} has no losses that follow its load, whose sign decides what a little of them does"
             yield why, numbers
+
+
+def holding_nothing(system: System, primal: Primal) -> Iterator[str]:
+    """Contacts that are locked though they can hold nothing: any difference of what they join lets them slip."""
+    row, columns, events = primal.rows[primal.row(primal.t_end)], primal.columns, primal.events
+    held = (row[columns["contact_mode"]] == LOCKED) & (row[columns["contact_capacity"]] == 0.0)
+    lets_go = (events[:, AT["from"]] == LOCKED) & (events[:, AT["torque_after"]] == 0.0)
+    left = set(events[lets_go, AT["contact"]].astype(int).tolist())
+    for number, contact in enumerate(system.contacts):
+        if follows_load(contact) and (held[number] or number in left):
+            yield f"{contact.name} is locked without capacity, and slips as soon as what it joins moves apart"
 
 
 def _ideal(chart: Chart, words: Array, system: System, contact: Component) -> Places:

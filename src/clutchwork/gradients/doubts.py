@@ -16,10 +16,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from clutchwork.base.classes import dataclass
-from clutchwork.gradients.at_bounds import held_fast, without_losses
+from clutchwork.gradients.at_bounds import held_fast, holding_nothing, without_losses
 from clutchwork.gradients.beginning import at_border, at_rest, at_rest_on_a_border, at_zero
 from clutchwork.gradients.contact_at_rest import unpressed
 from clutchwork.gradients.grazing import (
+    arriving_together,
     begins_unloaded,
     crowded,
     decided_at_knots,
@@ -184,6 +185,7 @@ class Doubts:
         found = chain(
             crowded(primal.events, contacts),
             struck_together(system, primal.events, contacts),
+            arriving_together(primal.events, begin, contacts),
             decided_at_knots(primal.events, primal.grazes, inside, contacts),
         )
         for time, why in found:
@@ -202,6 +204,8 @@ class Doubts:
             yield Doubt(why, every, numbers)
         for why, numbers in without_losses(chart, words, self.point.slopes):
             yield Doubt(why, every, numbers)
+        for why in holding_nothing(self.runs.task.system, self.run.primal):
+            yield Doubt(why, every, self._all)
         for why, numbers in self._resting():
             yield Doubt(why, every, numbers)
         for time, why, numbers in held_fast(chart, words, self.point.slopes, self.run.primal.events):

@@ -45,6 +45,8 @@ STAYS = ("multiplier", "set", "bend")
 UNSEEN = 1000
 ASK = "; ask for one side of it"
 IMPACT, JAM, DRIVEN = BY_NAME["impact"], BY_NAME["jam"], (BY_NAME["input"], BY_NAME["other event"])
+# causes of events that are decided together with others
+TAKEN_ALONG = (IMPACT, BY_NAME["other event"])
 AT = {name: column for column, (name, _) in enumerate(EVENT)}
 
 
@@ -228,6 +230,25 @@ def _struck(hit: Array, contacts: Sequence[str]) -> Iterator[tuple[float, str]]:
         time = float(times[place])
         yield time, f"{names} are struck at one instant, {time:.9g} s, and bounce; give them different gaps"
         return
+
+
+def arriving_together(events: Array, begin: float, contacts: Sequence[str]) -> Iterator[tuple[float, str]]:
+    """Contacts that come to rest, or are struck, at one instant, each for itself: they move with numbers of their own.
+
+    An impact decides about all contacts, and so does a slip that ends: what is known of the instant is that of one.
+    Parameters: begin, of the run [s], which does not move.
+    """
+    struck = events[:, AT["cause"]] == IMPACT
+    lands = (events[:, AT["to"]] == LOCKED) & (events[:, AT["from"]] != LOCKED)
+    later = events[:, AT["time"]] > begin
+    known = events[(struck | lands) & later & (events[:, AT["contact"]] >= 0.0)]
+    for place in np.flatnonzero(np.diff(known[:, AT["time"]]) <= ONE_INSTANT * 1e-3).tolist():
+        pair = known[place : place + 2]
+        if pair[0, AT["contact"]] != pair[1, AT["contact"]] and np.isin(pair[:, AT["cause"]], TAKEN_ALONG).any():
+            one, other = (contacts[int(number)] for number in pair[:, AT["contact"]])
+            time = float(pair[0, AT["time"]])
+            yield time, f"{one} and {other} come to rest, or are struck, at one instant, {time:.9g} s; separate them"
+            return
 
 
 def decided_at_knots(

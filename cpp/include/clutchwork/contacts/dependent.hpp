@@ -237,6 +237,17 @@ struct Shares {
     for (int r = 0; r < set.rank; ++r) deflection[r] += without_value(step[r]);
   }
 
+  /// What is missing where some have yielded, and their deflections may be any, goes to those that have not.
+  void complete() {
+    if (!newton_step()) return;
+    for (int i = 0; i < set.n; ++i) {
+      const T at = use(i, deflection);
+      if (yields(i, at)) continue;
+      const T more = set.x[i] + stiffness(i, value(at) >= 0) * use(i, step);
+      set.x[i] = larger(smaller(more, set.upper[i]), set.lower[i]);
+    }
+  }
+
   void solve() {
     double scale = 0;
     change_basis();
@@ -253,6 +264,8 @@ struct Shares {
     }
     if constexpr (has_tangents<T>) follow();
     for (int i = 0; i < set.n; ++i) set.x[i] = torque(i, use(i, deflection));
+    // far more than round-off
+    if (miss(deflection) > 1e-13 * scale) complete();
   }
 };
 

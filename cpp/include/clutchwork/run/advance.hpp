@@ -128,6 +128,19 @@ void follow_start_ratios(Workspace<T>& ws) {
   }
 }
 
+/// States that follow a command begin with what it is where a run begins.
+template <class T>
+void begin_with_commands(Workspace<T>& ws) {
+  const auto& sys = ws.sys;
+  for (int i = 0; i < sys.processes; ++i) {
+    if (sys.process_begins[i] < 0) continue;
+    const int at = int(sys.process_state[i]);
+    const T unit(sys.shared_scale[at - (sys.states - sys.shared)]);
+    ws.state[at] = ws.in.u[sys.process_input[i] + sys.process_begins[i]] / unit;
+    shared_inputs(ws, ws.state);
+  }
+}
+
 /// The inputs at the start, and the speeds there: where that is later than at 0, what nobody gave follows from what is
 /// prescribed then. docs/theory/reduction.md (13)
 template <class T>
@@ -142,6 +155,7 @@ void begin_inputs(Workspace<T>& ws) {
   }
   load_inputs(ws, ws.time);
   shared_inputs(ws, ws.state);
+  if (ws.time != 0) begin_with_commands(ws);
   if (!later) return;
   for (int p = 0; p < np; ++p) {
     // an integral begins where the run does
