@@ -431,3 +431,36 @@ def test_a_pump_whose_pressure_difference_jumps_through_zero_in_fixed_steps() ->
     long, short = (abs(d.simulate(1.0, method="fixed", step=step)["s.speed"][-1] - exact) for step in (1e-2, 1e-3))
     assert long < 1e-4
     assert short < 0.02 * long
+
+
+@pytest.mark.parametrize("seal", [20.0, 50.0, 300.0])
+@pytest.mark.parametrize("volume", [1e-6, 1e-5])
+@pytest.mark.parametrize("port", [1e-5, 1e-4])
+@pytest.mark.parametrize("rtol", [1e-6, 1e-9])
+def test_a_seal_holds_a_piston_whose_pressure_turns_round(seal: float, volume: float, port: float, rtol: float) -> None:
+    """The valve opens to its exhaust: held until the pressure has fallen by the friction both ways, then let go."""
+    d, _ = bench()
+    line = d.add(cw.OilVolume("line", volume=port))
+    command = cw.Table([(0.5, 1e6), (0.5, 1e5)])
+    areas = {"supply_area": 2e-5, "exhaust_area": 2e-5}
+    d.add(cw.SpoolValve("valve", supply=1e6, clutch=line, command=command, span=1e5, overlap=0.0, **areas))
+    plates = 2e7
+    parts = {**PISTON, "contact_rate": plates, "seal_friction": seal, "volume": volume}
+    d.add(cw.ClutchActuator("piston", supply_pressure=line, orifice_area=4e-6, **parts))
+    run = d.simulate(1.0, rtol=rtol)
+    assert run.status == "done"
+    force, pressure = run["piston.force"], run["piston.pressure"]
+    stroke = PISTON["kiss_stroke"] + force / plates
+    left = 6e-3 * pressure - PISTON["preload"] - PISTON["spring_rate"] * stroke - np.maximum(force, 0.0)
+    resting = np.isclose(force, -plates * PISTON["kiss_stroke"], rtol=1e-12)
+    # round-off of forces of 6 kN, and the kiss point between two rows
+    assert np.all(left <= seal + 1e-6)
+    assert np.all(left[~resting] >= -seal - 1e-6)
+    fell = run.time > 0.5
+    assert np.all(np.diff(force[fell]) <= 1e-7)
+    held = fell & (left > -seal + 1e-3)
+    top = force[run.time <= 0.5][-1]
+    assert force[held & (force > 0.0)] == pytest.approx(top, rel=1e-6)
+    # what moved it out last was all that its friction let through
+    assert left[run.time <= 0.5][-1] == pytest.approx(seal, abs=1e-6)
+    assert force[-1] < 0.0 or left[-1] == pytest.approx(-seal, abs=1e-3)

@@ -112,14 +112,25 @@ struct ClutchActuator : declared::ClutchActuator {
     const T unit = T(1e5);
     // at the start it may be anywhere
     if (now == stopped && value(way) > 1e-9) return watch(S(1e-9) - way, leaves), least + change;
-    if (now == stopped || now == stuck) watch((lifting(p, at) - resting_pressure(p, at)) / unit, lifts);
-    if (now == stuck) watch((resting_pressure(p, at) - falling(p, at)) / unit, falls);
+    if (now == stopped || now == stuck)
+      watch(held_by(p, at, lifting(p, at) - resting_pressure(p, at), 1) / unit, lifts);
+    if (now == stuck) watch(held_by(p, at, resting_pressure(p, at) - falling(p, at), -1) / unit, falls);
     if (now == out && rubs) watch((supply - lifting(p, at)) / unit, sticks);
     if (now == back) watch((falling(p, at) - supply) / unit, sticks);
     if (now == back || (now == out && !rubs)) watch(way, stops);
     if (now != stopped)
       watch((kissed(at.piece) ? at.state[force] : -at.state[force]) / (p.contact_rate * p.kiss_stroke), kisses);
     return least + change;
+  }
+  /// How far a piston at rest is from moving one way, by what its own pressure lacks: that follows the supply, and
+  /// moves nothing before the supply could. docs/theory/actuators.md
+  template <class T, class S>
+  static S held_by(const Params<T>& p, const At<S>& at, const S& lacking, int way) {
+    // more than it may be beyond by the tolerance of a step was there from the start: that moves the piston at once
+    constexpr double at_once = 1e3;
+    if (!(value(p.volume) > 0) || value(lacking) < -at_once) return lacking;
+    const S ahead = T(way) * (resting_pressure(p, at) - at.input[Input::supply_pressure]);
+    return value(ahead) > 0 ? lacking + ahead : lacking;
   }
   template <class T>
   static int cross(const Params<T>& p, const At<T>& at, int who, T* state) {
