@@ -23,6 +23,7 @@ HOOKS = (
     Hook(("edges", "edge"), "Kinked", ("torque", "law", "contact"), "kinks over the rate or the slip"),
     Hook(("margin", "cross", "turns"), "SwitchingLaw", ("torque", "law"), "pieces that its states or inputs switch"),
     Hook(("margin", "cross"), "SwitchingProcess", ("process", "flow"), "pieces that its states and inputs switch"),
+    Hook(("corner",), "CorneredProcess", ("process",), "corners at which what it follows may rest"),
     Hook(("drawn",), "DrawingProcess", ("process",), "flows that it draws from what gives its inputs"),
     Hook(("freed",), "Freeing", ("torque",), "stored energy that becomes heat where a piece is left"),
     Hook(("settle",), "Settling", ("torque", "law"), "pieces that follow from where it is, after a jump too"),

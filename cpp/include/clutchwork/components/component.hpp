@@ -223,6 +223,21 @@ concept SwitchingProcess =
       { E::cross(p, at, 0, state) } -> std::same_as<int>;
     };
 
+/// Where a process is that turns at a place: the states that are the place and what turns there, the input that is the
+/// speed, the piece before the place (the one behind it is the next), the place, and what turns on either side of it.
+template <class T>
+struct Corner {
+  int moves, turns, speed, piece;
+  T place, before, behind;
+};
+
+/// Process of pieces with corners at which what it follows may come to rest. Two states, a place and what turns there.
+template <class E>
+concept CorneredProcess =
+    requires(const typename E::template Params<double>& p, const At<double>& at, Corner<double>& found) {
+      { E::corner(p, at, found) } -> std::same_as<bool>;
+    };
+
 /// Process whose inputs draw: `flow[i]` is what it takes from the process that gives input i. A flow looks at states,
 /// signals and rates alone.
 template <class E>

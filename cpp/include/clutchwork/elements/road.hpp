@@ -35,7 +35,7 @@ struct Road : declared::Road {
     int piece = at.piece < n ? at.piece : n;
     // the point itself, so that round-off does not lead back over it
     const T passed = T(points[3 * (who == forward ? piece : piece - 1)]);
-    if (abs(value(state[position] - passed)) < 1e-9 * (1 + abs(value(passed)))) state[position] = passed;
+    if (is_at(state[position], passed)) state[position] = passed;
     if (who == forward) {
       for (++piece; piece < n && value(state[position]) > x(piece);) ++piece;
     } else {
@@ -44,8 +44,26 @@ struct Road : declared::Road {
     state[slope] = T(slope_on(p, at.points, piece));
     return piece;
   }
+  /// The point at which it is, to round-off.
+  template <class T>
+  static bool corner(const Params<T>& p, const At<T>& at, Corner<T>& found) {
+    const int n = int(common(p.elevation.count)), piece = at.piece < n ? at.piece : n;
+    const Point<T>* points = at.points + 3 * int(common(p.elevation.first));
+    for (int i = piece > 0 ? piece - 1 : 0; i < n && i <= piece; ++i) {
+      const T place = T(points[3 * i]);
+      if (!is_at(at.state[position], place)) continue;
+      const T before = T(slope_on(p, at.points, i)), behind = T(slope_on(p, at.points, i + 1));
+      found = {position, slope, int(Input::speed), i, place, before, behind};
+      return true;
+    }
+    return false;
+  }
 
  private:
+  template <class T>
+  static bool is_at(const T& position, const T& point) {
+    return abs(value(position - point)) < 1e-9 * (1 + abs(value(point)));
+  }
   /// Slope of a piece; the road is level outside of its points.
   template <class T, class G>
   static G slope_on(const Params<T>& p, const G* points, int piece) {

@@ -13,6 +13,7 @@
 #include <clutchwork/contacts/sticking.hpp>
 #include <clutchwork/contacts/stops.hpp>
 #include <clutchwork/run/clamp_loads.hpp>
+#include <clutchwork/run/corners.hpp>
 #include <clutchwork/run/event.hpp>
 #include <clutchwork/run/settle.hpp>
 #include <clutchwork/run/snapshot.hpp>
@@ -33,21 +34,6 @@ T torque_after(const Workspace<T>& ws, int c) {
   return held + contact_torque(ws, b, rate_of(ws, d), ws.state, ws.observed.state_rates);
 }
 
-/// Slip acceleration of every contact right after the decision, in decision.acceleration.
-template <class T>
-void accelerations_after(Workspace<T>& ws) {
-  const int nc = int(ws.sys.contacts), ne = int(ws.sys.elements);
-  int* stuck = ws.decision.candidate;
-  T *q = ws.decision.motion, *out = ws.decision.acceleration;
-  for (int c = 0; c < nc; ++c) stuck[c] = ws.contact.mode[c] == locked;
-  free_motion(ws, stuck, q);
-  for (int c = 0; c < nc; ++c) {
-    const bool holds = (ws.contact.mode[c] == locked && ws.contact.loaded[c]) || ws.loads.of[c] >= 0;
-    if (holds) ws.geometry.mass_weighted.add(ne + c, ws.decision.torque[c], q);
-  }
-  for (int c = 0; c < nc; ++c) out[c] = ws.contact.mode[c] == locked ? T(0) : slip_acceleration(ws, c, q);
-}
-
 /// Stops that were forced to open and are driven back may hold after all: whether there are such ones.
 template <class T>
 bool takes_back_stops(Workspace<T>& ws) {
@@ -65,19 +51,6 @@ bool takes_back_stops(Workspace<T>& ws) {
     any = true;
   }
   return any;
-}
-
-/// How a contact that is at its limit and starts to slip moves direction d, however little there is to move it yet.
-template <class T>
-double breaks_away(Workspace<T>& ws, int d) {
-  const int c = ws.event_context.contact, nv = int(ws.sys.speeds);
-  if (c < 0 || ws.event_context.cause != Cause::torque_limit) return 0;
-  const int sign = ws.contact.mode[c];
-  if (sign != forward && sign != backward) return 0;
-  T* x = ws.decision.speed;
-  for (int i = 0; i < nv; ++i) x[i] = T(0);
-  ws.geometry.mass_weighted.add(int(ws.sys.elements) + c, T(sign), x);
-  return value(ws.geometry.mass_weighted.times(d, x));
 }
 
 /// The piece that element d enters in the motion that was decided, of which decision.motion is the acceleration: the
@@ -148,13 +121,20 @@ Status settle_once(Workspace<T>& ws, int located) {
 
 /// The same with the torques behind the kinks at which elements are.
 template <class T>
-Status settle(Workspace<T>& ws, int located) {
+Status settle_at_kinks(Workspace<T>& ws, int located) {
   constexpr int most = 4;
   find_pieces(ws);
   for (int round = 0;; ++round) {
     const Status status = settle_once(ws, located);
     if (status != Status::running || round == most || !enter_pieces(ws)) return status;
   }
+}
+
+/// The same at the corners at which processes are.
+template <class T>
+Status settle(Workspace<T>& ws, int located) {
+  const Status status = settle_at_kinks(ws, located);
+  return status == Status::running ? settle_at_corners(ws, [&] { return settle_at_kinks(ws, located); }) : status;
 }
 
 /// A freewheel that runs backward although everything is decided, or that nothing keeps from starting to; -1: none.
