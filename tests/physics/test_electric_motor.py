@@ -215,6 +215,30 @@ def test_held_at_rest_it_drives_whichever_way_its_command_turns(way):
     assert run["m.torque"] == pytest.approx(way * np.array([5.0, -20.0, -20.0, 20.0, -15.0]), rel=1e-12)
 
 
+@pytest.mark.parametrize("beside", [0.0, 4e4])
+@pytest.mark.parametrize("load", [30.0, 31.7, 34.0, 40.0])
+@pytest.mark.parametrize("brakes", [20.0, 33.3, 50.0, 100.0])
+@pytest.mark.parametrize("speed", [5.0, -5.0, 7.7])
+@pytest.mark.parametrize("way", [1.0, -1.0])
+def test_what_comes_to_rest_in_friction_is_held_there_while_it_drives(way, speed, brakes, load, beside):
+    """Its torque jumps there; the speed at which it arrives is round-off, more of it beside a fast shaft."""
+    d, asked, friction, inertia = cw.Driveline("rests"), 74.0, 50.0, 0.1
+    s = d.shaft("s", inertia=inertia, speed=way * speed)
+    d.shaft("beside", inertia=1.0, speed=beside)
+    d.add(cw.Torque("t", shaft=s, torque=way * load))
+    d.add(cw.BearingFriction("b", shaft=s, torque=friction, friction=cw.Coulomb(static=1.0, kinetic=1.0)))
+    d.add(cw.ElectricMotor("m", shaft=s, command=-way * asked, max_torque=100.0, generator_torque=brakes))
+    run = d.simulate(1.0, rtol=1e-6)
+    assert run.status == "done"
+    drive = load - friction - min(asked, brakes) if speed > 0.0 else load + friction - asked
+    (rest,) = run.events
+    assert (rest.after, rest.time) == ("locked", pytest.approx(-speed * inertia / drive, rel=1e-9))
+    later = run.time > rest.time
+    assert run["m.torque"][later] == pytest.approx(np.full(later.sum(), -way * asked), rel=1e-12)
+    assert run["b.torque"][later] == pytest.approx(np.full(later.sum(), way * (asked - load)), rel=1e-12)
+    assert np.all(run["s.speed"][later] == 0.0)
+
+
 @pytest.mark.parametrize("way", [1.0, -1.0])
 @pytest.mark.parametrize("point", [12.0, 15.0, 19.0])
 def test_held_at_rest_it_drives_beyond_a_point_of_its_losses(way, point):

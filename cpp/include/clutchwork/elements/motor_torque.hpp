@@ -194,7 +194,7 @@ struct MotorTorque : declared::MotorTorque {
   template <class T, class S>
   static bool is_at_rest(const Params<T>& p, const At<S>& at) {
     const NumberList speeds(p.speeds, at.points);
-    return abs(value(at.rate)) <= 1e-11 * value(speeds[speeds.count - 1]);
+    return abs(value(at.rate)) <= 1e-11 * (1 + value(speeds[speeds.count - 1]));
   }
   /// Whether it stays at rest.
   template <class T, class S>

@@ -9,6 +9,17 @@
 /// The smooth pieces on which the elements are: docs/theory/events.md, rule 12.
 namespace clutchwork {
 
+/// Rate of element d as its pieces see it: what is at a kink to what counts as zero is exactly there.
+/// docs/theory/events.md, rule 17
+template <class T>
+T rate_at_kinks(const Workspace<T>& ws, int d, double zero) {
+  const T rate = rate_of(ws, d);
+  const int below = piece_of(ws, d, value(rate) + zero) - 1;
+  if (below < 0) return rate;
+  const T kink = edge_at(ws, d, below);
+  return abs(value(rate) - value(kink)) <= zero ? kink : rate;
+}
+
 /// The elements are on the pieces that hold their rates, states and inputs: at a kink, to what counts as zero, on the
 /// one above, for what jumps there must not follow round-off. docs/theory/events.md, rule 17
 template <class T>
@@ -20,7 +31,9 @@ void find_pieces(Workspace<T>& ws) {
     if (edges > 0) ws.piece[d] += piece_of(ws, d, value(rate_of(ws, d)) + zero) - ws.piece[d] % (edges + 1);
     if (!is_settling(ws.sys.element_kind[d])) continue;
     const Branch<T> b = make_branch(ws, d, 0);
-    ws.piece[d] = settled_piece(ws, b, PresentRates<T>(ws, b).at);
+    PresentRates<T> rate(ws, b);
+    if (edges > 0 && b.ways == 1) rate.at[0] = rate_at_kinks(ws, d, zero);
+    ws.piece[d] = settled_piece(ws, b, rate.at);
   }
 }
 
