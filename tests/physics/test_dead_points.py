@@ -67,6 +67,39 @@ def cams(speed: float) -> cw.Driveline:
     return d
 
 
+@pytest.mark.parametrize("drag", [1e-7, 3e-7, 1e-6, 4e-6, 1e-5])
+@pytest.mark.parametrize("speed", [10.0, 20.0, 40.0])
+@pytest.mark.parametrize("outer", [True, False])
+def test_a_flank_opens_right_behind_the_dead_point_of_a_ram_that_rubs(outer: bool, speed: float, drag: float) -> None:
+    """Nanometres of arm: with the bend x'' of the ram the crank loses (m x''^2 w^2 + F |x''|) per angle behind it.
+
+    The flywheel, which drag D brakes, is left where that has brought the acceleration of the crank J1 to -D / J2.
+    """
+    own, wheel_inertia, mass, force, radius, rod = 1.0, 2.0, 5.0, 16.0, 0.1, 0.4
+    d = cw.Driveline("crank and flywheel")
+    crank = d.shaft("crank", inertia=own, speed=speed)
+    wheel = d.shaft("wheel", inertia=wheel_inertia, speed=speed)
+    ram = d.mass("ram", mass=mass)
+    d.add(cw.Backlash("play", base=crank, follower=wheel, gap=0.02, initial_twist=-0.01))
+    d.add(cw.Torque("drag", shaft=wheel, torque=-drag))
+    phase = (0.0 if outer else pi) - 0.05
+    d.add(cw.CrankSlider("slider", shaft=crank, mass=ram, radius=radius, rod=rod, phase=phase))
+    lining = cw.Coulomb(static=1.0, kinetic=0.8)
+    d.add(cw.BearingFriction("guide", shaft=ram, friction=lining, torque=force / 0.8))
+    run = d.simulate(0.07 / speed, rtol=1e-9, atol=1e-12)
+    assert run.status == "done"
+    turned, opened = run.events
+    assert (turned.element, opened.element, opened.after) == ("guide", "play", "open")
+    bend = radius * (1.0 + radius / rod) if outer else radius * (1.0 - radius / rod)
+    w = float(run.at([turned.time])["crank.speed"][0])
+    behind = drag * own / wheel_inertia / (mass * bend**2 * w**2 + force * bend) / w
+    # round-off of the torques at which it is let go is that of picoseconds
+    assert opened.time - turned.time == pytest.approx(behind, rel=1e-3, abs=1e-11)
+    loses = drag / wheel_inertia * (run.time[-1] - opened.time)
+    left = float(run.at([opened.time])["wheel.speed"][0])
+    assert run["wheel.speed"][-1] == pytest.approx(left - loses, rel=1e-12)
+
+
 def test_a_cam_at_rest_cannot_start_with_a_mass_that_another_moves() -> None:
     """At the dead point its ratio is zero, and its shaft has no torque to turn by: no motion keeps both ratios."""
     with pytest.warns(cw.StoppedEarly):

@@ -11,13 +11,13 @@ namespace clutchwork {
 
 /// Mass-weighted acceleration without contacts that may stick: L^-1 (forces - M_p du/dt).
 /// ws.decision.effort: sum of the sizes of all contributions, what round-off of q is measured against; pull: of
-/// torques.
+/// torques; missed: of what the rows of transmissions leave of them where that does not count.
 template <class T>
 void free_motion(Workspace<T>& ws, const int* candidate, T* q) {
   const auto& sys = ws.sys;
   const int nv = int(sys.speeds);
   for (int i = 0; i < nv; ++i) q[i] = T(0);
-  ws.decision.effort = ws.decision.pull = 0;
+  ws.decision.effort = ws.decision.pull = ws.decision.missed = 0;
   for (int l = 0; l < sys.loads; ++l) {
     ws.coupled.given[l] = T(0);
     for (int p = 0; p < sys.prescribed; ++p)
@@ -28,6 +28,7 @@ void free_motion(Workspace<T>& ws, const int* candidate, T* q) {
     for (int l = 0; l < sys.loads; ++l) ws.coupled.given[l] += ws.loads.by_torque[l * ws.n_directions + d] * size;
     ws.decision.effort += abs(value(size)) * sqrt(value(ws.geometry.own[d]));
     ws.decision.pull += abs(value(size));
+    if (ws.ratios.inside) ws.decision.missed += abs(value(size)) * value(ws.ratios.missed[d]);
   };
   for (int p = 0; p < sys.prescribed; ++p)
     axpy(nv, -ws.in.prescribed_slope[p], ws.geometry.prescribed_momentum + p * nv, q);

@@ -239,11 +239,11 @@ void leave_directions(Workspace<T>& ws, double left = left_over) {
     r.whole[d] = dot(nv, x, x);
     for (int k = 0; k < r.rank; ++k) r.part[d * r.n + k] = dot(nv, r.span + k * nv, x);
     take_off_span(ws, x);
-    r.own[d] = dot(nv, x, x);
+    r.own[d] = dot(nv, x, x), r.missed[d] = T(0);
     const double least = d < ne ? smaller(r.blur, left) : left;
     if (value(r.own[d]) > least * least * value(r.whole[d])) continue;
     for (int i = 0; i < nv; ++i) x[i] = T(0);
-    r.own[d] = T(0);
+    r.missed[d] = T(sqrt(value(r.own[d]))), r.own[d] = T(0);
   }
   r.mass_weighted.first[ws.n_directions] = ws.n_directions * nv;
   for (int c = 0; c < nc; ++c) {

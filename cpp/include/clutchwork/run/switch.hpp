@@ -34,7 +34,8 @@ T torque_after(const Workspace<T>& ws, int c) {
   return held + contact_torque(ws, b, rate_of(ws, d), ws.state, ws.observed.state_rates);
 }
 
-/// Stops that were forced to open and are driven back may hold after all: whether there are such ones.
+/// Stops that were forced to open and are driven back may hold after all: whether there are such ones. What a decision
+/// leaves out drives none. docs/theory/play.md, rule 5
 template <class T>
 bool takes_back_stops(Workspace<T>& ws) {
   const int ne = int(ws.sys.elements);
@@ -45,7 +46,7 @@ bool takes_back_stops(Workspace<T>& ws) {
   accelerations_after(ws);
   any = false;
   for (int c = 0; c < ws.sys.contacts; ++c) {
-    const double noise = 1e-12 * ws.decision.effort * value(sqrt(ws.geometry.own[ne + c]));
+    const double noise = (1e-12 * ws.decision.effort + ws.decision.missed) * value(sqrt(ws.geometry.own[ne + c]));
     if (!forced(c) || ws.contact.side[c] * value(ws.decision.acceleration[c]) <= noise) continue;
     ws.contact.forced[c] = 0, ws.contact.mode[c] = locked;
     any = true;

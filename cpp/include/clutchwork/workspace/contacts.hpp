@@ -148,6 +148,7 @@ struct Decision {
   T* motion = nullptr;        ///< mass-weighted acceleration, of each speed
   double effort = 0;          ///< sum of the sizes of what makes it, against which its round-off is measured
   double pull = 0;            ///< the same of the torques alone
+  double missed = 0;          ///< the same of what does not make it, for next to nothing is left of its direction
   T* torque = nullptr;        ///< of each contact that is locked [N m]
   T* acceleration = nullptr;  ///< of each slip, after it
   T* speed = nullptr;         ///< change of each speed by impulses

@@ -50,6 +50,7 @@ struct Ratios {
   T *own = nullptr, *mobility = nullptr;
   T* via = nullptr;     ///< directions x n: share of the row of a transmission that was taken off a direction
   T* whole = nullptr;   ///< mobility of each direction before the span was taken off
+  T* missed = nullptr;  ///< length of what is left of a direction and does not count
   T* part = nullptr;    ///< directions x n: parts of a direction along the span
   T* tied = nullptr;    ///< n, scratch: what the rows of a motion miss, or its parts along the span
   bool inside = false;  ///< a decision is made
@@ -79,6 +80,7 @@ struct Ratios {
     a.scratch(p.row, n * nv), a.take(p.order, n), a.scratch(p.span, n * nv), a.scratch(p.triangle, n * n);
     a.scratch(p.share, n), a.scratch(p.drawn, n), a.scratch(p.tied, n);
     Compressed<T>::lay_out(p.mass_weighted, a, nd, nd * nv), a.scratch(p.own, nd), a.scratch(p.whole, nd);
+    a.scratch(p.missed, nd);
     a.scratch(p.mobility, nc * (nc + 1) / 2), a.scratch(p.via, nd * n), a.scratch(p.part, nd * n);
     a.take(p.place, rows), a.take(p.tie, n + nc), a.take(p.column, n);
     a.scratch(p.along, rows * nv), a.scratch(p.between, rows * rows), a.scratch(p.follows, rows * n);
