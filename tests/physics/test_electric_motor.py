@@ -239,6 +239,22 @@ def test_what_comes_to_rest_in_friction_is_held_there_while_it_drives(way, speed
     assert np.all(run["s.speed"][later] == 0.0)
 
 
+@pytest.mark.parametrize(("speed", "beside"), [(5e-11, 0.0), (-5e-11, 0.0), (1e-6, 4e4), (-1e-6, 4e4)])
+@pytest.mark.parametrize("brakes", [20.0, 50.0])
+@pytest.mark.parametrize("way", [1.0, -1.0])
+def test_what_moves_less_than_counts_is_at_rest_and_it_drives(way, brakes, speed, beside):
+    d, asked, load = cw.Driveline("rests"), 74.0, 30.0
+    s = d.shaft("s", inertia=0.1, speed=way * speed)
+    d.shaft("beside", inertia=1.0, speed=beside)
+    d.add(cw.Torque("t", shaft=s, torque=way * load))
+    d.add(cw.BearingFriction("b", shaft=s, torque=50.0, friction=cw.Coulomb(static=1.0, kinetic=1.0)))
+    d.add(cw.ElectricMotor("m", shaft=s, command=-way * asked, max_torque=100.0, generator_torque=brakes))
+    run = d.simulate(1.0)
+    assert run.status == "done"
+    assert run["m.torque"] == pytest.approx(np.full(len(run.time), -way * asked), rel=1e-12)
+    assert run["b.torque"] == pytest.approx(np.full(len(run.time), way * (asked - load)), rel=1e-12)
+
+
 @pytest.mark.parametrize("way", [1.0, -1.0])
 @pytest.mark.parametrize("point", [12.0, 15.0, 19.0])
 def test_held_at_rest_it_drives_beyond_a_point_of_its_losses(way, point):
