@@ -191,3 +191,35 @@ def test_torques_before_a_step_are_those_of_the_row_before_it() -> None:
     for one in changed:
         assert one.torque_before == pytest.approx(run[f"{one.element}.torque"][before], rel=1e-9)
         assert abs(one.torque_before) <= run[f"{one.element}.capacity"][before] * (1.0 + 1e-9)
+
+
+@pytest.mark.parametrize("loss", [0.03, 0.06, 0.1])
+@pytest.mark.parametrize("strong", [80.0, 100.0, 140.0])
+@pytest.mark.parametrize("opens", [0.4, 0.5, 0.7])
+def test_a_brake_that_opens_hands_its_load_to_the_other_one(loss: float, strong: float, opens: float) -> None:
+    """Two gears turn with the load of the stronger of two brakes: at the instant at which that is all that it holds,
+    the other one takes it, and from then on they turn as they do once the first is open."""
+    d = cw.Driveline("hands over")
+    s0, s1 = d.shaft("s0", inertia=0.5, speed=-50.0), d.shaft("s1", inertia=0.1, speed=0.0)
+    p1, p3 = d.shaft("p1", inertia=0.05), d.shaft("p3", inertia=0.2)
+    for name, carrier, friction in (("a", p1, 1.0), ("b", p3, 0.0)):
+        teeth = {"teeth_sun": 30, "teeth_ring": 70, "efficiency": 1.0 - loss, "bearing_torque": friction}
+        d.add(cw.LossyPlanetary(name, sun=s0, ring=s1, carrier=carrier, **teeth))
+    lining = cw.Coulomb(static=1.0, kinetic=1.0)
+    d.add(cw.BearingFriction("weak", shaft=p1, friction=lining, torque=18.0))
+    d.add(cw.Brake("b6", shaft=s0, friction=lining, gain=20.0, normal_force=1.0))
+    force = cw.Table([(0.0, 1.0), (0.3, 1.0), (opens, 0.0)])
+    d.add(cw.Brake("strong", shaft=p3, friction=lining, gain=strong, normal_force=force))
+    run = d.simulate(opens + 0.1, rtol=1e-8)
+    assert run.status == "done"
+    held = float(run.at([0.25])["strong.torque"][0])
+    # what is left of its capacity is its torque
+    changes = opens - abs(held) / strong * (opens - 0.3)
+    before, after = 0.3 + 0.999 * (changes - 0.3), changes + 0.01 * (opens - changes)
+    rows = run.at([before, after, opens - 1e-6, opens + 0.05])
+    assert rows["strong.torque"] == pytest.approx([held, 0.0, 0.0, 0.0], rel=1e-9, abs=1e-12)
+    for gear in ("a", "b"):
+        assert rows[f"{gear}.torque"] == pytest.approx(rows[f"{gear}.capacity"], rel=1e-9, abs=1e-12)
+        assert rows[f"{gear}.torque"][1:] == pytest.approx(np.full(3, rows[f"{gear}.torque"][3]), rel=1e-9, abs=1e-12)
+    assert rows["weak.torque"][1:] == pytest.approx(np.full(3, rows["weak.torque"][3]), rel=1e-9)
+    assert abs(rows["a.torque"][1] / rows["a.torque"][0] - 1.0) > 1e-3

@@ -113,6 +113,48 @@ T distance_from_slip(const Workspace<T>& ws, int c, T torque) {
   return smaller(torque + capacity, freewheel_limit(ws, c) - torque);
 }
 
+/// Whether a redundant contact holds more now than independent contact a of its set.
+template <class T>
+bool has_stronger(const Workspace<T>& ws, int a) {
+  const Held<T>& h = ws.held;
+  auto strength = [&](int c) {
+    T lower, upper;
+    bounds_of_held(ws, c, lower, upper);
+    return larger(value(-lower), value(upper));
+  };
+  for (int s = 0; s < h.n_redundant; ++s) {
+    const int c = h.redundant[s];
+    const bool shares = ws.loads.of[c] < 0 && value(h.tie[s * ws.sys.contacts + a]) != 0;
+    if (shares && strength(c) > strength(h.contact[a])) return true;
+  }
+  return false;
+}
+
+/// Where an independent contact of a set, with whose torque gears in slip move, no longer holds that, and a stronger
+/// one takes its place. docs/theory/load-dependent.md, rule 3
+template <class Form>
+[[gnu::noinline]] void find_handover(Form& form, Step<Form>& step, Hit& hit) {
+  // of the capacity: one that starts at its limit has nowhere to pass it
+  constexpr double least = 1e-9;
+  auto& ws = form.ws;
+  for (int a = 0; a < ws.held.n; ++a) {
+    const int c = ws.held.contact[a];
+    if (ws.held.in_set[a] == 0 || ws.loads.of[c] >= 0 || is_rigid(ws, c)) continue;
+    double before, after;
+    const bool holds = holds_on(ws, a, step.h, before, after);
+    if (holds || before <= least * value(ws.step_start.capacity[a])) continue;
+    fit(form, step);
+    auto f = [&](double s) {
+      torques_at(form, step, s);
+      return margin_seen(ws, a);
+    };
+    const double s = first_crossing(f, before, after, hit.s);
+    if (!hit.is_after(s)) continue;
+    f(s);
+    if (has_stronger(ws, a)) hit.take(s, a);
+  }
+}
+
 /// A locked contact at its limit, or one whose sides prescribed speeds part.
 struct TorqueLimit {
   static constexpr const char* name = "multiplier";
@@ -138,6 +180,9 @@ struct TorqueLimit {
   template <class Form>
   CLUTCHWORK_INLINE static void find(Form& form, Step<Form>& step, Hit& hit) {
     auto& ws = form.ws;
+    if constexpr (Form::full) {
+      if (ws.held.n_sets > 0 && ws.loads.n_sliding > 0) find_handover(form, step, hit);
+    }
     int* watched = ws.guard.limit;
     int n = 0;
     double m0 = infinity, m1 = infinity;
@@ -212,6 +257,8 @@ struct TorqueLimit {
   static void settle(Phase& phase, const Hit& hit) {
     auto& ws = phase.ws();
     const int c = ws.held.contact[hit.index];
+    // the set goes on holding, by another one
+    if (ws.held.in_set[hit.index] != 0 && !is_rigid(ws, c)) return phase.decide(Cause::other_event);
     phase.decide(Cause::torque_limit, c);
     if (rolls_over(ws, c)) return fail(ws, c);
     if (is_rigid(ws, c)) return;
