@@ -1,4 +1,4 @@
-"""Signals that are exactly zero for a while and count as zero below it: a little more of them acts, less does not."""
+"""Signals that for a while are exactly what counts as zero: a little more of them acts, a little less does not."""
 
 from __future__ import annotations
 
@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 
 from clutchwork.base.memoize import memoize
 from clutchwork.declare.schema import inputs
+from clutchwork.gradients.references import Reference, references, touched
 
 if TYPE_CHECKING:
     from clutchwork.assembly.system import System
@@ -42,32 +43,56 @@ class Unpressed(NamedTuple):
 def unpressed(
     chart: Chart, words: Array, slopes: Slopes, names: Sequence[str], sizes: Array, run: tuple[float, float]
 ) -> Iterator[Unpressed]:
-    """Intervals in which they are zero.
+    """Intervals in which they are zero, or what their owners take off them.
 
     Parameters: sizes, of the numbers; run, its begin and end [s].
     """
+    if not slopes.touch(*chart.words_in("segment_coef")) and not touched(chart, slopes):
+        return
+    for number in pressing(chart.assembled.system):
+        for one in references(chart, words, slopes, number):
+            yield from _at(one, number, chart, words, slopes, names, sizes, run)
+
+
+def _at(
+    border: Reference,
+    number: int,
+    chart: Chart,
+    words: Array,
+    slopes: Slopes,
+    names: Sequence[str],
+    sizes: Array,
+    run: tuple[float, float],
+) -> Iterator[Unpressed]:
+    """Those in which one signal is at one of these values."""
     begin, end = run
-    system, (time, _), (first, size) = chart.assembled.system, *map(chart.words_in, ("segment_time", "segment_coef"))
-    for number in pressing(system) if slopes.touch(first, size) else ():
-        start, count = (int(system.arrays[f"input_{what}"][number]) for what in ("first", "count"))
-        pieces = words[first + PIECE * start : first + PIECE * (start + count)].reshape(count, PIECE)
-        period = float(words[chart.words_in("input_period")[0] + number])
-        begins = words[time + start : time + start + count]
-        bounds = np.r_[begins, begins[0] + period if period > 0.0 else np.inf]
-        for piece in np.flatnonzero(~pieces[:, :4].any(axis=1) & ~pieces[:, [4, 8]].any(axis=1)).tolist():
-            # a wave acts whatever its sign
-            cubic, waves = (slopes.of(first + PIECE * (start + piece) + np.array(words)) for words in (CUBIC, WAVES))
-            moved: Mask = np.any(cubic != 0.0, axis=0) | np.any(waves != 0.0, axis=0)
-            since, until = _first_time(bounds, piece, period, begin)
-            if moved.any() and since < end and until > begin:
-                since, until = max(since, begin), min(until, end)
-                free = ", ".join(names[column] for column in np.flatnonzero(moved).tolist())
-                what = f"{system.inputs[number].name} is 0 from {since:g} to {until:g} s"
-                one_way = _are_one_way(cubic) and not waves.any()
-                acts = "a little less acts another way" if waves.any() else "a little less does not"
-                why = f"{what}, where a little more of {free} acts and {acts}"
-                yield Unpressed(since, why, moved, one_way, np.zeros(len(names)))
-        yield from _at_knots(system, number, pieces, bounds, slopes, first + PIECE * start, sizes, run)
+    system, (time, _), (first, _) = chart.assembled.system, *map(chart.words_in, ("segment_time", "segment_coef"))
+    start, count = (int(system.arrays[f"input_{what}"][number]) for what in ("first", "count"))
+    pieces = words[first + PIECE * start : first + PIECE * (start + count)].reshape(count, PIECE)
+    period = float(words[chart.words_in("input_period")[0] + number])
+    begins = words[time + start : time + start + count]
+    bounds = np.r_[begins, begins[0] + period if period > 0.0 else np.inf]
+    for piece in np.flatnonzero(_rests(pieces, border)).tolist():
+        # a wave acts whatever its sign
+        cubic, waves = (slopes.of(first + PIECE * (start + piece) + np.array(words)) for words in (CUBIC, WAVES))
+        cubic[0] -= border.slopes
+        moved: Mask = np.any(cubic != 0.0, axis=0) | np.any(waves != 0.0, axis=0)
+        since, until = _first_time(bounds, piece, period, begin)
+        if moved.any() and since < end and until > begin:
+            since, until = max(since, begin), min(until, end)
+            free = ", ".join(names[column] for column in np.flatnonzero(moved).tolist())
+            what = f"{system.inputs[number].name} is {border.words} from {since:g} to {until:g} s"
+            one_way = _are_one_way(cubic) and not waves.any()
+            acts = "a little less acts another way" if waves.any() else "a little less does not"
+            why = f"{what}, where a little more of {free} acts and {acts}"
+            yield Unpressed(since, why, moved, one_way, np.zeros(len(names)))
+    yield from _at_knots(system, number, border, pieces, bounds, slopes, first + PIECE * start, sizes, run)
+
+
+def _rests(pieces: Array, border: Reference) -> Mask:
+    """Which pieces of a signal are constant at such a value."""
+    found: Mask = ~pieces[:, 1:4].any(axis=1) & ~pieces[:, [4, 8]].any(axis=1) & (pieces[:, 0] == border.value)
+    return found
 
 
 def _first_time(bounds: Array, piece: int, period: float, begin: float) -> tuple[float, float]:
@@ -87,6 +112,7 @@ def _first_time(bounds: Array, piece: int, period: float, begin: float) -> tuple
 def _at_knots(
     system: System,
     number: int,
+    border: Reference,
     pieces: Array,
     bounds: Array,
     slopes: Slopes,
@@ -94,22 +120,24 @@ def _at_knots(
     sizes: Array,
     run: tuple[float, float],
 ) -> Iterator[Unpressed]:
-    """Knots at which a load that is zero there and not beside it begins or ends.
+    """Knots at which a load that counts as zero there and not beside it begins or ends.
 
     Parameters: first, the word of the first piece; run, its begin and end [s].
     """
-    acts: Mask = np.asarray(pieces[:, :4].any(axis=1) | pieces[:, [4, 8]].any(axis=1))
+    acts = ~_rests(pieces, border)
     # a run may begin at one, where it does not matter what was before
     goes_on = np.append(False, acts[:-1]) | (bounds[:-1] == run[0])
     waves = pieces[:, [4, 8]] * np.sin(pieces[:, [6, 10]])
     nothing = ROUND_OFF * np.abs(pieces[:, [0, 4, 8]]).sum(axis=1)
-    for piece in np.flatnonzero((np.abs(pieces[:, 0] + waves.sum(axis=1)) <= nothing) & acts & goes_on).tolist():
-        moves = _begins(pieces[piece], slopes, first + PIECE * piece)
+    value = pieces[:, 0] + waves.sum(axis=1) - border.value
+    for piece in np.flatnonzero((np.abs(value) <= nothing) & acts & goes_on).tolist():
+        moves = _begins(pieces[piece], slopes, first + PIECE * piece) - border.slopes
         # a wave that begins at zero is moved by its size by round-off alone
         moved = np.abs(moves) * sizes > BY_ROUND_OFF * np.abs(pieces[piece, [0, 4, 8]]).sum()
         time = float(bounds[piece])
         if moved.any() and run[0] <= time < run[1]:
-            what = f"{system.inputs[number].name} is 0 at its knot at {time:g} s, where it begins or ends"
+            where = f"at its knot at {time:g} s, where it begins or ends"
+            what = f"{system.inputs[number].name} is {border.words} {where}"
             far = SEEN * _rate(pieces[piece]) / np.where(moved, np.abs(moves), np.inf)
             far = np.minimum(far, FARTHEST * sizes)
             yield Unpressed(time, f"{what}; give that point a value", moved, _are_one_way(moves[None, moved]), far)

@@ -37,7 +37,7 @@ from clutchwork.gradients.runs import Run, RunPoint, Runs
 Array = NDArray[np.float64]
 Mask = NDArray[np.bool_]
 
-# arrays without which no number changes how a run starts, and which loads press
+# arrays without which no number changes how a run starts
 STARTS = ("segment_coef", "contact_rate_value", "initial_speed", "initial_state")
 # what lasts less than some nanoseconds is not seen: so many steps beside zero a slip starts, a border, and a state
 LET_GO, AT_THE_START, BEHIND_THE_START = 1e2, 3e2, 1e3
@@ -210,12 +210,12 @@ class Doubts:
             yield Doubt(why, every, numbers)
         for time, why, numbers in held_fast(chart, words, self.point.slopes, self.run.primal.events):
             yield Doubt(why, self._up_to(time), numbers, width=REBOUND)
-        if chart.stays(*STARTS):
-            return
         names = [one.name for one in self.runs.task.parameters]
         begin, end = self.runs.wanted.begin, self.runs.wanted.t_end
         for one in unpressed(chart, words, self.point.slopes, names, self.point.sizes, (begin, end)):
             yield Doubt(one.why, self._up_to(one.since), one.numbers, one.one_way, least=one.far)
+        if chart.stays(*STARTS):
+            return
         for why, numbers in at_rest(chart, words, self.point.slopes):
             yield Doubt(why, every, numbers, width=LET_GO)
         for why, numbers in at_zero(chart, self.point.slopes):

@@ -1,0 +1,97 @@
+"""What rests exactly where a little more acts and a little less does not: derivatives of either side, none silently."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+import clutchwork as cw
+
+TIGHT = {"rtol": 1e-9, "atol": 1e-12}
+SIDES = ("left", "right")
+GRIP = cw.Coulomb(static=0.125, kinetic=0.1)
+
+
+def both(d, t_end, of, by, match):
+    """Derivatives from the left and from the right of what is refused, with these words, without a side."""
+    with pytest.raises(cw.NoGradient, match=match):
+        cw.differentiable(d, t_end, of=of, by=by, **TIGHT).gradient()
+    return [cw.differentiable(d, t_end, of=of, by=by, side=side, **TIGHT).gradient().matrix for side in SIDES]
+
+
+def discs():
+    d = cw.Driveline("discs")
+    return d, d.shaft("e", inertia=0.2, speed=100.0), d.shaft("l", inertia=0.8)
+
+
+def with_piston(command, **given):
+    d, e, f = discs()
+    piston = d.add(cw.PressureActuator("x", command=command, lag=0.05, **given))
+    d.add(cw.Clutch("c", base=e, follower=f, friction=GRIP, gain=1e-3, pressure=piston))
+    return d
+
+
+@pytest.mark.parametrize("fill_time", [0.0, 0.1])
+def test_a_command_that_rests_on_its_spring_for_a_while(fill_time):
+    """It presses later by what the areas below its pressure say, which the lag only shifts."""
+    d = with_piston(cw.Table([(0.0, 5e4), (0.3, 5e4), (0.6, 2e5)]), spring=5e4, fill_time=fill_time)
+    by, per = ["x.spring", "x.command.values[1]", "x.command.values[2]"], 1e-3 * 0.1 / 0.2
+    # a piston that has to be filled fills with the area of its command; the table has two triangles, of 0.15 s each
+    left, right = both(d, 1.5, "e.speed", by, r"x\.command is 50000, as x\.spring, from 0 to 0\.3 s")
+    lag = 0.05
+    np.testing.assert_allclose(left[0] / per, [1.5 - lag, 0.0, -0.15], rtol=1e-6, atol=1e-6)
+    np.testing.assert_allclose(right[0] / per, [1.2 - lag, -0.15, -0.3], rtol=1e-6, atol=1e-6)
+
+
+def test_a_spring_that_is_zero_under_a_command_of_zero():
+    """Less of the spring is not allowed, and more of it acts only once the command does."""
+    d = cw.Driveline("brake")
+    m = d.mass("m", mass=1.0, speed=5.0)
+    command = cw.Table([(0.0, 0.0), (0.1, 0.0), (0.3, 2e5)])
+    piston = d.add(cw.PressureActuator("x", command=command, lag=0.05, fill_time=0.1))
+    d.add(cw.Brake("b", shaft=m, friction=cw.Coulomb(static=1.0, kinetic=1.0), gain=1e-5, pressure=piston))
+    with pytest.raises(cw.NoGradient, match=r"a little more of x\.spring acts"):
+        cw.differentiable(d, 1.0, of="m.speed", by="x.spring", **TIGHT).gradient()
+    right = cw.differentiable(d, 1.0, of="m.speed", by="x.spring", side="right", **TIGHT).gradient().matrix
+    assert right[0, 0] == pytest.approx(1e-5 * (0.9 - 0.05), rel=1e-5)
+
+
+def test_a_filled_piston_whose_command_begins_on_its_spring():
+    """Both sides agree where it has to be filled again, and have another value than the run at the point says."""
+    step = cw.Step(offset=5e4, height=1.5e5, start=0.3)
+    d = with_piston(step, spring=5e4, fill_time=0.1, filled=True)
+    found = cw.differentiable(d, 1.5, of=cw.lock("c"), by=["x.spring", "x.command.offset"], **TIGHT)
+    x, far = found.x0, np.array([1.0, 0.0])
+    tight = cw.differentiable(d, 1.5, of=cw.lock("c"), by=["x.spring", "x.command.offset"], rtol=1e-11, atol=1e-14)
+    wanted = (tight(x + far) - tight(x - far))[0] / 2.0
+    np.testing.assert_allclose(found.gradient().matrix[0], [wanted, -wanted], rtol=1e-5)
+
+
+@pytest.mark.parametrize("sign", [1.0, -1.0])
+def test_a_pressure_that_rests_on_the_threshold_of_its_plates(sign):
+    d, e, f = discs()
+    plates = {"gain": 1e-3, "threshold": 4e4, "pressure": sign * 4e4, "reversed": sign < 0.0}
+    d.add(cw.PlateContact("c", base=e, follower=f, friction=GRIP, **plates))
+    by, per = ["c.threshold", "c.pressure"], 1e-3 * 0.1 / 0.2
+    left, right = both(d, 1.0, "e.speed", by, r"c\.pressure is -?40000, as c\.threshold, from 0 to 1 s")
+    np.testing.assert_allclose(left[0] / per, [1.0, 0.0 if sign > 0 else 1.0], rtol=1e-6, atol=1e-9)
+    np.testing.assert_allclose(right[0] / per, [0.0, -1.0 if sign > 0 else 0.0], rtol=1e-6, atol=1e-9)
+
+
+def test_a_pressure_that_reaches_the_threshold_and_stays():
+    d, e, f = discs()
+    press = cw.Table([(0.0, 0.0), (0.2, 4e4), (0.5, 4e4), (0.6, 2e5)])
+    d.add(cw.PlateContact("c", base=e, follower=f, friction=GRIP, gain=1e-3, threshold=4e4, pressure=press))
+    by, per = ["c.threshold", "c.pressure.values[2]", "c.pressure.values[3]"], 1e-3 * 0.1 / 0.2
+    left, right = both(d, 1.0, "e.speed", by, r"c\.pressure is 40000, as c\.threshold, from 0\.2 to 0\.5 s")
+    np.testing.assert_allclose(left[0] / per, [0.8, 0.0, -0.05], rtol=1e-6, atol=1e-6)
+    np.testing.assert_allclose(right[0] / per, [0.5, -0.15, -0.2], rtol=1e-6, atol=1e-6)
+
+
+def test_a_pressure_that_touches_the_threshold_at_a_knot():
+    """A little more of it acts for a while that grows with how much: the derivative is zero on both sides."""
+    d, e, f = discs()
+    press = cw.Table([(0.0, 0.0), (0.2, 4e4), (0.5, 0.0)])
+    d.add(cw.PlateContact("c", base=e, follower=f, friction=GRIP, gain=1e-3, threshold=4e4, pressure=press))
+    found = cw.differentiable(d, 1.0, of="e.speed", by=["c.threshold", "c.pressure.values[2]"], **TIGHT).gradient()
+    np.testing.assert_allclose(found.matrix, 0.0, atol=1e-9)
