@@ -95,3 +95,68 @@ def test_a_pressure_that_touches_the_threshold_at_a_knot():
     d.add(cw.PlateContact("c", base=e, follower=f, friction=GRIP, gain=1e-3, threshold=4e4, pressure=press))
     found = cw.differentiable(d, 1.0, of="e.speed", by=["c.threshold", "c.pressure.values[2]"], **TIGHT).gradient()
     np.testing.assert_allclose(found.matrix, 0.0, atol=1e-9)
+
+
+def differences(d, t_end, of, by, h):
+    """Differences on both sides, the error of first order in h left out."""
+    function = cw.differentiable(d, t_end, of=of, by=by, rtol=1e-12, atol=1e-15)
+    x = function.x0
+
+    def slopes(step):
+        return np.array([(function(x + step * one) - function(x))[0] / step for one in np.eye(len(x)) * x])
+
+    return [(2.0 * slopes(sign * h / 2.0) - slopes(sign * h)) / x for sign in (-1.0, 1.0)]
+
+
+def thrown(kind):
+    """A shaft that turns exactly at the onset of weights until a torque drives it on."""
+    d, e, f = discs()
+    d.add(cw.Torque("t", shaft=e, torque=cw.Step(height=10.0, start=0.3)))
+    law = cw.Coulomb(static=0.35, kinetic=0.3)
+    if kind == "flyweights":
+        weights = d.add(cw.Flyweights("w", mass=0.1, radius=0.03, onset=100.0, speed=e))
+        d.add(cw.Brake("c", shaft=e, friction=law, gain=0.5, normal_force=weights))
+        return d, "w.onset"
+    shoes = {"shoes": 2, "mass": 0.1, "radius": 0.06, "drum_radius": 0.08, "onset": 100.0}
+    d.add(cw.CentrifugalClutch("c", base=e, follower=f, friction=law, **shoes))
+    return d, "c.onset"
+
+
+@pytest.mark.parametrize("kind", ["flyweights", "clutch"])
+def test_a_speed_that_rests_at_the_onset_of_weights(kind):
+    d, onset = thrown(kind)
+    found = both(d, 1.0, "e.speed", [onset, "e.speed"], "the load of c rests at zero up to 0.3 s")
+    for side, wanted in zip(found, differences(d, 1.0, "e.speed", [onset, "e.speed"], 1e-7), strict=True):
+        np.testing.assert_allclose(side[0], wanted, rtol=3e-5)
+
+
+def test_a_prescribed_speed_that_rests_at_the_onset_of_weights():
+    """For a higher onset the drum is driven from 0.5 s on, for a lower one from the start."""
+    d = cw.Driveline("prescribed")
+    e, f = d.shaft("e", inertia=0.1), d.shaft("f", inertia=0.3)
+    d.add(cw.PrescribedSpeed("p", shaft=e, speed=cw.Table([(0.0, 100.0), (0.5, 100.0), (0.8, 150.0)])))
+    shoes = {"shoes": 2, "mass": 0.1, "radius": 0.06, "drum_radius": 0.08, "onset": 100.0}
+    d.add(cw.CentrifugalClutch("c", base=e, follower=f, friction=GRIP, **shoes))
+    left, right = both(d, 1.0, "f.speed", "c.onset", "the load of c rests at zero up to 0.5 s")
+    per = -0.1 * 2 * 0.08 * 0.1 * 0.06 * 2 * 100.0 / 0.3
+    assert left[0, 0] == pytest.approx(1.0 * per, rel=1e-6)
+    # the lag shows for a while that grows with how much higher the onset is
+    assert right[0, 0] == pytest.approx(0.5 * per, rel=1e-4)
+
+
+def test_a_belt_whose_centrifugal_tension_is_its_preload():
+    d, e, f = discs()
+    belt = {"radius_base": 0.1, "radius_follower": 0.06, "centre_distance": 0.35, "friction_coefficient": 0.3}
+    d.add(cw.BeltDrive("x", base=e, follower=f, preload=100.0, mass_per_length=1.0, **belt))
+    by = ["x.preload", "x.mass_per_length", "e.speed"]
+    found = both(d, 0.5, "e.speed", by, "the load of x rests at zero up to 0.5 s")
+    for side, wanted in zip(found, differences(d, 0.5, "e.speed", by, 1e-6), strict=True):
+        np.testing.assert_allclose(side[0], wanted, rtol=1e-5, atol=1e-7)
+
+
+def test_weights_that_never_reach_their_onset_cost_no_more():
+    d, _ = thrown("clutch")
+    function = cw.differentiable(d, 0.2, of="e.speed", by=["c.lag", "e.inertia"], **TIGHT)
+    point = function.engine.runs.point(function.x0)
+    known, lines = function.engine.lines(point)
+    assert not function.engine._doubts(point, known, lines)

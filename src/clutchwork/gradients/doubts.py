@@ -32,6 +32,7 @@ from clutchwork.gradients.grazing import (
 from clutchwork.gradients.knots import times_of
 from clutchwork.gradients.lines import Line
 from clutchwork.gradients.primal import SAME
+from clutchwork.gradients.resting_loads import resting_loads
 from clutchwork.gradients.runs import Run, RunPoint, Runs
 
 Array = NDArray[np.float64]
@@ -214,6 +215,8 @@ class Doubts:
         begin, end = self.runs.wanted.begin, self.runs.wanted.t_end
         for one in unpressed(chart, words, self.point.slopes, names, self.point.sizes, (begin, end)):
             yield Doubt(one.why, self._up_to(one.since), one.numbers, one.one_way, least=one.far)
+        for why, numbers in resting_loads(self.runs.task.system, self.point, self.run):
+            yield Doubt(why, every, numbers)
         if chart.stays(*STARTS):
             return
         for why, numbers in at_rest(chart, words, self.point.slopes):

@@ -32,7 +32,7 @@ class Reference(NamedTuple):
 
 
 class Place(NamedTuple):
-    """Where such a number stands: the signal that it is taken off, its place among all parameters, its sign."""
+    """Where such a number stands: the signal that it is taken off, -1 of a state, its place among all parameters."""
 
     number: int
     place: int
@@ -74,5 +74,5 @@ def _of(system: System, part: Component, known: dict[str, int]) -> Iterator[Plac
         if signal in names:
             sign = -1.0 if getattr(part, "reversed", False) else 1.0
             place = parameter_place(system.numbered, part, number)
-            mine = (f"{part.name}.{name}" for name in names)
-            yield from (Place(known[one], place, sign, f"{part.name}.{number}") for one in mine if one in known)
+            mine = [known[one] for one in (f"{part.name}.{name}" for name in names) if one in known]
+            yield Place(mine[0] if mine else -1, place, sign, f"{part.name}.{number}")

@@ -18,6 +18,7 @@ from clutchwork.gradients.knots import knots
 from clutchwork.gradients.plain import Detail, PlainRuns
 from clutchwork.gradients.primal import Knots, Primal
 from clutchwork.gradients.refined import WithinSteps
+from clutchwork.gradients.resting_loads import instants
 from clutchwork.gradients.signals_at import SignalsAt
 from clutchwork.gradients.steps import NO_STEPS, Steps
 from clutchwork.gradients.task import GradientTask
@@ -53,6 +54,7 @@ class RunPoint(NamedTuple):
     by_rows: Mapping[Output, float]  # what rows of that run say: squared jerks, extremes in short steps
     grid: Array  # s, instants of rows
     notes: tuple[str, ...]  # on what is only just differentiable
+    looked_at: tuple[float, ...] = ()  # s, when it is looked at whether loads rest at zero
 
     @property
     def system(self) -> bytes:
@@ -122,7 +124,9 @@ class Runs:
         slopes = chart.slopes(x)
         moving = knots(chart, words, slopes, self.wanted.begin, self.wanted.t_end)
         known = x, self.sizes(x), chart, words, slopes, moving
-        point = RunPoint(*known, NO_STEPS, np.zeros(0), {}, self.wanted.grid, ())
+        looked_at = instants(self.task.system, chart, words, self.wanted.begin, self.wanted.t_end)
+        grid = np.union1d(self.wanted.grid, looked_at) if looked_at else self.wanted.grid
+        point = RunPoint(*known, NO_STEPS, np.zeros(0), {}, grid, (), looked_at)
         if not self.plain.in_steps:
             return point
         run, steps, by_rows = self.plain.with_steps(point.system, self.signals.at(x))
@@ -194,7 +198,9 @@ class Runs:
         return not integrals.isdisjoint(all_reads(self.signals.plain.values()))
 
     def _with_grid(self, point: RunPoint) -> RunPoint:
-        return point._replace(grid=np.unique(np.concatenate([self.wanted.grid, point.steps.times.ravel()])))
+        return point._replace(
+            grid=np.unique(np.concatenate([self.wanted.grid, point.looked_at, point.steps.times.ravel()]))
+        )
 
     def _aligned(self, point: RunPoint, events: Array) -> RunPoint | None:
         """The point with other instants of events, where they are too far from those that were expected."""
