@@ -160,3 +160,44 @@ def test_weights_that_never_reach_their_onset_cost_no_more():
     point = function.engine.runs.point(function.x0)
     known, lines = function.engine.lines(point)
     assert not function.engine._doubts(point, known, lines)
+
+
+def sprag(load, **given):
+    d = cw.Driveline("sprag")
+    f = d.shaft("f", inertia=0.8)
+    d.add(cw.SpragClutch("c", base=d.housing, follower=f, **given))
+    d.add(cw.Torque("t", shaft=f, torque=load))
+    return d
+
+
+def test_a_load_that_is_exactly_the_drag_of_a_freewheel():
+    """A little more load, or less drag, and it overruns."""
+    by = ["c.drag", "t.torque"]
+    left, right = both(sprag(5.0, holding=60.0, drag=5.0), 1.0, "f.speed", by, "c is loaded exactly to its drag at 1 s")
+    np.testing.assert_allclose(left[0], [-1.25, 0.0], rtol=1e-9, atol=1e-9)
+    np.testing.assert_allclose(right[0], [0.0, 1.25], rtol=1e-9, atol=1e-9)
+
+
+@pytest.mark.parametrize(
+    ("load", "free", "at"),
+    [
+        (-50.0, "t.torque", 1.2),
+        (cw.Table([(0.0, 0.0), (0.3, -50.0), (1.0, 0.0)]), "t.torque.values[2]", 0.3),
+        (cw.Ramp(height=-50.0, duration=0.3), "t.torque.height", 0.3),
+    ],
+    ids=["constant", "peak", "ramp"],
+)
+def test_a_load_that_is_exactly_what_a_freewheel_holds(load, free, at):
+    """Where a little more makes it roll over speeds jump: there is no derivative from that side."""
+    d = sprag(load, holding=50.0)
+    with pytest.raises(cw.NoGradient, match=rf"c is loaded exactly to its holding at {at} s"):
+        cw.differentiable(d, 1.2, of="f.speed", by=["c.holding", free], **TIGHT).gradient()
+    with pytest.raises(cw.NoGradient):
+        d.simulate(1.2).gradient(of="f.speed", by="c.holding")
+    right = cw.differentiable(d, 1.2, of="f.speed", by=["c.holding", free], side="right", **TIGHT).gradient().matrix
+    np.testing.assert_allclose(right[0], 0.0, atol=1e-9)
+
+
+def test_a_load_below_what_a_freewheel_holds_is_not_in_doubt():
+    found = cw.differentiable(sprag(-49.9, holding=50.0), 1.0, of="f.speed", by=["c.holding", "t.torque"], **TIGHT)
+    np.testing.assert_array_equal(found.gradient().matrix, 0.0)

@@ -17,6 +17,7 @@ from numpy.typing import NDArray
 
 from clutchwork.base.classes import dataclass
 from clutchwork.gradients.at_bounds import held_fast, holding_nothing, without_losses
+from clutchwork.gradients.at_limits import at_limits
 from clutchwork.gradients.beginning import at_border, at_rest, at_rest_on_a_border, at_zero
 from clutchwork.gradients.contact_at_rest import unpressed
 from clutchwork.gradients.grazing import (
@@ -215,7 +216,7 @@ class Doubts:
         begin, end = self.runs.wanted.begin, self.runs.wanted.t_end
         for one in unpressed(chart, words, self.point.slopes, names, self.point.sizes, (begin, end)):
             yield Doubt(one.why, self._up_to(one.since), one.numbers, one.one_way, least=one.far)
-        for why, numbers in resting_loads(self.runs.task.system, self.point, self.run):
+        for why, numbers in self._watched():
             yield Doubt(why, every, numbers)
         if chart.stays(*STARTS):
             return
@@ -223,6 +224,12 @@ class Doubts:
             yield Doubt(why, every, numbers, width=LET_GO)
         for why, numbers in at_zero(chart, self.point.slopes):
             yield Doubt(why, every, numbers, width=BEHIND_THE_START)
+
+    def _watched(self) -> Iterator[tuple[str, Mask]]:
+        """What rests at borders that no guard watches."""
+        given = self.runs.task.system, self.point, self.run
+        yield from resting_loads(*given)
+        yield from at_limits(*given)
 
     def _resting(self) -> Iterator[tuple[str, Mask]]:
         """Pistons and others that stay as they begin, and the numbers that would move them at once."""

@@ -13,15 +13,17 @@ from clutchwork.assembly.wiring import Wiring, wiring
 from clutchwork.base.classes import dataclass
 from clutchwork.declare.core import derivatives
 from clutchwork.declare.layout import DONE, INTERRUPTED
+from clutchwork.gradients.at_limits import holders
 from clutchwork.gradients.functional import Functional
 from clutchwork.gradients.knots import knots
 from clutchwork.gradients.plain import Detail, PlainRuns
 from clutchwork.gradients.primal import Knots, Primal
 from clutchwork.gradients.refined import WithinSteps
-from clutchwork.gradients.resting_loads import instants
+from clutchwork.gradients.resting_loads import followers
 from clutchwork.gradients.signals_at import SignalsAt
 from clutchwork.gradients.steps import NO_STEPS, Steps
 from clutchwork.gradients.task import GradientTask
+from clutchwork.gradients.watched import knots_and_end
 from clutchwork.gradients.words import Chart, Slopes, Words
 from clutchwork.results.forms import all_reads
 from clutchwork.results.gradient import NoGradient
@@ -54,7 +56,7 @@ class RunPoint(NamedTuple):
     by_rows: Mapping[Output, float]  # what rows of that run say: squared jerks, extremes in short steps
     grid: Array  # s, instants of rows
     notes: tuple[str, ...]  # on what is only just differentiable
-    looked_at: tuple[float, ...] = ()  # s, when it is looked at whether loads rest at zero
+    looked_at: tuple[float, ...] = ()  # s, when it is looked at whether anything rests at a border
 
     @property
     def system(self) -> bytes:
@@ -124,7 +126,7 @@ class Runs:
         slopes = chart.slopes(x)
         moving = knots(chart, words, slopes, self.wanted.begin, self.wanted.t_end)
         known = x, self.sizes(x), chart, words, slopes, moving
-        looked_at = instants(self.task.system, chart, words, self.wanted.begin, self.wanted.t_end)
+        looked_at = knots_and_end(chart, words, self.wanted.begin, self.wanted.t_end) if self._is_watched else ()
         grid = np.union1d(self.wanted.grid, looked_at) if looked_at else self.wanted.grid
         point = RunPoint(*known, NO_STEPS, np.zeros(0), {}, grid, (), looked_at)
         if not self.plain.in_steps:
@@ -185,6 +187,11 @@ class Runs:
     @cached_property
     def _wiring(self) -> Wiring:
         return wiring(self.task.system)
+
+    @cached_property
+    def _is_watched(self) -> bool:
+        """Whether anything may rest at a border that no guard watches."""
+        return bool(followers(self.task.system) or holders(self.task.system))
 
     @cached_property
     def _told(self) -> list[tuple[str, float]]:
