@@ -201,3 +201,40 @@ def test_a_load_that_is_exactly_what_a_freewheel_holds(load, free, at):
 def test_a_load_below_what_a_freewheel_holds_is_not_in_doubt():
     found = cw.differentiable(sprag(-49.9, holding=50.0), 1.0, of="f.speed", by=["c.holding", "t.torque"], **TIGHT)
     np.testing.assert_array_equal(found.gradient().matrix, 0.0)
+
+
+def on_a_bend(prescribed):
+    """A brake whose coefficient begins to grow with the slip exactly where it turns."""
+    d = cw.Driveline("bend")
+    e = d.shaft("e", inertia=0.2, **({} if prescribed else {"speed": 100.0}))
+    law = cw.Formula("m+c*max(v-w,0)", m=0.1, c=0.01, w=100.0)
+    d.add(cw.Brake("b", shaft=e, friction=law, gain=1e-3, pressure=1e5))
+    if prescribed:
+        d.add(cw.PrescribedSpeed("p", shaft=e, speed=100.0))
+    else:
+        d.add(cw.Torque("t", shaft=e, torque=cw.Table([(0.0, 10.0), (0.3, 10.0), (0.6, 12.0)])))
+    return d
+
+
+def test_a_formula_that_rests_on_its_bend():
+    """A speed that settles at it, and with it how the speed at the start dies away."""
+    by, of = ["b.friction.w", "e.speed"], "e.speed"
+    left, right = both(on_a_bend(prescribed=False), 1.0, of, by, "the formula of b is at a bend at 0.3 s")
+    # more speed decays with 0.2 s from the start on, less speed from when the torque rises
+    rate = 0.01 * 1e-3 * 1e5 / 0.2
+    assert right[0, 1] == pytest.approx(np.exp(-rate), rel=1e-5)
+    assert left[0, 0] == pytest.approx(1.0 - np.exp(-rate), rel=1e-5)
+    for side, wanted in zip((left, right), differences(on_a_bend(prescribed=False), 1.0, of, by, 1e-8), strict=True):
+        np.testing.assert_allclose(side[0], wanted, rtol=5e-3)
+
+
+def test_a_formula_that_is_held_on_its_bend():
+    by, of = ["b.friction.w", "b.friction.c"], "b.heat"
+    found = [
+        cw.differentiable(on_a_bend(prescribed=True), 1.0, of=of, by=by, side=side, **TIGHT).gradient().matrix
+        for side in SIDES
+    ]
+    none = cw.differentiable(on_a_bend(prescribed=True), 1.0, of=of, by=by, **TIGHT).gradient()
+    assert np.isnan(none.matrix[0, 0])
+    assert "the formula of b is at a bend at 1 s" in none.problems[0]
+    np.testing.assert_allclose(found, [[[-100.0, 0.0]], [[0.0, 0.0]]], atol=1e-9)

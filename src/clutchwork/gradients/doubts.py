@@ -19,6 +19,7 @@ from clutchwork.base.classes import dataclass
 from clutchwork.gradients.at_bounds import held_fast, holding_nothing, without_losses
 from clutchwork.gradients.at_limits import at_limits
 from clutchwork.gradients.beginning import at_border, at_rest, at_rest_on_a_border, at_zero
+from clutchwork.gradients.bent_formulas import bent_formulas
 from clutchwork.gradients.contact_at_rest import unpressed
 from clutchwork.gradients.grazing import (
     arriving_together,
@@ -81,6 +82,7 @@ class Doubts:
         yield from self._kinks()
         yield from self._decisions()
         yield from self._start()
+        yield from self._watched()
 
     # ------------------------------------------------------------------------------------------------------ what moves
 
@@ -216,8 +218,6 @@ class Doubts:
         begin, end = self.runs.wanted.begin, self.runs.wanted.t_end
         for one in unpressed(chart, words, self.point.slopes, names, self.point.sizes, (begin, end)):
             yield Doubt(one.why, self._up_to(one.since), one.numbers, one.one_way, least=one.far)
-        for why, numbers in self._watched():
-            yield Doubt(why, every, numbers)
         if chart.stays(*STARTS):
             return
         for why, numbers in at_rest(chart, words, self.point.slopes):
@@ -225,11 +225,11 @@ class Doubts:
         for why, numbers in at_zero(chart, self.point.slopes):
             yield Doubt(why, every, numbers, width=BEHIND_THE_START)
 
-    def _watched(self) -> Iterator[tuple[str, Mask]]:
+    def _watched(self) -> Iterator[Doubt]:
         """What rests at borders that no guard watches."""
-        given = self.runs.task.system, self.point, self.run
-        yield from resting_loads(*given)
-        yield from at_limits(*given)
+        given, every = (self.runs.task.system, self.point, self.run), np.ones(len(self.lines), dtype=bool)
+        for why, numbers in chain(resting_loads(*given), at_limits(*given), bent_formulas(*given)):
+            yield Doubt(why, every, numbers)
 
     def _resting(self) -> Iterator[tuple[str, Mask]]:
         """Pistons and others that stay as they begin, and the numbers that would move them at once."""

@@ -14,6 +14,7 @@ from clutchwork.base.classes import dataclass
 from clutchwork.declare.core import derivatives
 from clutchwork.declare.layout import DONE, INTERRUPTED
 from clutchwork.gradients.at_limits import holders
+from clutchwork.gradients.bent_formulas import formulas
 from clutchwork.gradients.functional import Functional
 from clutchwork.gradients.knots import knots
 from clutchwork.gradients.plain import Detail, PlainRuns
@@ -191,7 +192,7 @@ class Runs:
     @cached_property
     def _is_watched(self) -> bool:
         """Whether anything may rest at a border that no guard watches."""
-        return bool(followers(self.task.system) or holders(self.task.system))
+        return any(found(self.task.system) for found in (followers, holders, formulas))
 
     @cached_property
     def _told(self) -> list[tuple[str, float]]:
