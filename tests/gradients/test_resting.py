@@ -238,3 +238,56 @@ def test_a_formula_that_is_held_on_its_bend():
     assert np.isnan(none.matrix[0, 0])
     assert "the formula of b is at a bend at 1 s" in none.problems[0]
     np.testing.assert_allclose(found, [[[-100.0, 0.0]], [[0.0, 0.0]]], atol=1e-9)
+
+
+def towards_a_stop(upper, **given):
+    """A mass of 1 kg that moves with 1 m/s towards a stop."""
+    d = cw.Driveline("stop")
+    m = d.mass("m", mass=1.0, position=0.0, speed=1.0)
+    d.add(cw.EndStop("e", follower=m, upper=upper, **given))
+    return d, m
+
+
+def test_a_brake_that_stops_a_mass_exactly_at_a_stop():
+    """The stop holds it for more speed, the brake for less."""
+    d, m = towards_a_stop(0.5)
+    d.add(cw.Brake("b", shaft=m, friction=cw.Coulomb(static=1.0, kinetic=1.0), gain=1.0, normal_force=1.0))
+    by = ["e.upper", "m.speed", "b.gain"]
+    left, right = both(d, 1.5, "m.position", by, "e is only just reached at 1 s")
+    np.testing.assert_allclose(left[0], [1.0, 1.0, 0.0], rtol=1e-6, atol=1e-9)
+    np.testing.assert_allclose(right[0], [0.0, 0.0, -0.5], rtol=1e-6, atol=1e-9)
+
+
+def test_a_bounce_where_a_torque_jumps():
+    """Struck before it, half of the speed is lost without the torque; struck later, with what the torque added."""
+    d, m = towards_a_stop(1.0, upper_restitution=0.5)
+    d.add(cw.Torque("t", shaft=m, torque=cw.Step(height=0.5, start=1.0)))
+    by = ["e.upper", "m.speed"]
+    left, right = both(d, 1.5, ["m.position", "m.speed"], by, "e is struck at 1 s, where a signal jumps")
+    np.testing.assert_allclose(left, [[1.5, -0.375], [0.0, 0.25]], rtol=1e-6, atol=1e-9)
+    np.testing.assert_allclose(right, [[1.125, -0.75], [-0.75, -0.5]], rtol=1e-6, atol=1e-9)
+
+
+def test_a_stop_that_is_struck_at_the_end():
+    d, _ = towards_a_stop(1.0, upper_restitution=0.5)
+    of, by = [cw.maximum("m.position"), cw.integral("m.speed")], ["e.upper", "m.speed"]
+    left, right = both(d, 1.0, of, by, "an event is at the end of the run, 1 s")
+    np.testing.assert_allclose(left, [[1.0, 1.0], [1.5, 1.0]], rtol=1e-6, atol=1e-9)
+    np.testing.assert_allclose(right, [[0.0, 0.0], [0.0, -0.5]], rtol=1e-6, atol=1e-9)
+    # the instant itself is one as long as it is there
+    found = cw.differentiable(d, 1.0, of=cw.integral("m.speed"), by="m.mass", **TIGHT).gradient()
+    assert found.matrix[0, 0] == pytest.approx(0.0, abs=1e-9)
+
+
+@pytest.mark.parametrize("end", [{"upper": 0.5, "lower": -3.0}, {"gap": 1.0}], ids=["stop", "backlash"])
+def test_a_mass_that_is_at_rest_at_an_end_as_the_run_ends(end):
+    """It turns round there, and no blow tells of it."""
+    d = cw.Driveline("turns")
+    m = d.mass("m", mass=1.0, position=0.0, speed=1.0)
+    if "gap" in end:
+        d.add(cw.Backlash("e", base=d.housing, follower=m, **end))
+    else:
+        d.add(cw.EndStop("e", follower=m, **end))
+    d.add(cw.Torque("t", shaft=m, torque=-1.0))
+    with pytest.raises(cw.NoGradient, match=r"e is (reached at the end of the run|only just reached)"):
+        cw.differentiable(d, 1.0, of="m.speed", by=["m.speed", "t.torque"], **TIGHT).gradient()

@@ -18,6 +18,7 @@ from numpy.typing import NDArray
 from clutchwork.base.classes import dataclass
 from clutchwork.gradients.at_bounds import held_fast, holding_nothing, without_losses
 from clutchwork.gradients.at_limits import at_limits
+from clutchwork.gradients.at_stops import met_at_the_end, met_otherwise
 from clutchwork.gradients.beginning import at_border, at_rest, at_rest_on_a_border, at_zero
 from clutchwork.gradients.bent_formulas import bent_formulas
 from clutchwork.gradients.contact_at_rest import unpressed
@@ -36,6 +37,7 @@ from clutchwork.gradients.lines import Line
 from clutchwork.gradients.primal import SAME
 from clutchwork.gradients.resting_loads import resting_loads
 from clutchwork.gradients.runs import Run, RunPoint, Runs
+from clutchwork.sweeps.outputs import AtTimes, When
 
 Array = NDArray[np.float64]
 Mask = NDArray[np.bool_]
@@ -83,6 +85,7 @@ class Doubts:
         yield from self._decisions()
         yield from self._start()
         yield from self._watched()
+        yield from self._ends()
 
     # ------------------------------------------------------------------------------------------------------ what moves
 
@@ -191,6 +194,7 @@ class Doubts:
             struck_together(system, primal.events, contacts),
             arriving_together(primal.events, begin, contacts),
             decided_at_knots(primal.events, primal.grazes, inside, contacts),
+            met_otherwise(system, primal.events, primal.grazes, contacts),
         )
         for time, why in found:
             yield Doubt(why, self._up_to(time), self._all)
@@ -230,6 +234,24 @@ class Doubts:
         given, every = (self.runs.task.system, self.point, self.run), np.ones(len(self.lines), dtype=bool)
         for why, numbers in chain(resting_loads(*given), at_limits(*given), bent_formulas(*given)):
             yield Doubt(why, every, numbers)
+
+    def _ends(self) -> Iterator[Doubt]:
+        """Events at the end of the run, and stops that are reached there: what is summed up may bend."""
+        end = self.run.primal.t_end
+        asked = self._up_to(end * (1.0 - SAME)) & ~self._instants_asked
+        sums = asked & np.array([line.at is None for line in self.lines])
+        if self._is_at(end) and sums.any():
+            why = f"an event is at the end of the run, {end:.9g} s, and moves; end it before or behind that"
+            yield Doubt(why, sums, self._moving_events(end))
+        for why, numbers in met_at_the_end(self.runs.task.system, self.point, self.run, end) if asked.any() else ():
+            yield Doubt(why, asked, numbers)
+
+    @cached_property
+    def _instants_asked(self) -> Mask:
+        """Values that are instants of events."""
+        ones = self.runs.task.outputs.values()
+        counts = [len(one.times) if isinstance(one, AtTimes) else 1 for one in ones]
+        return np.repeat([isinstance(one, When) for one in ones], counts)
 
     def _resting(self) -> Iterator[tuple[str, Mask]]:
         """Pistons and others that stay as they begin, and the numbers that would move them at once."""
