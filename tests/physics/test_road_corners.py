@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from typing import Any
 
+import numpy as np
 import pytest
 
 import clutchwork as cw
@@ -91,6 +92,18 @@ def test_a_valley_is_left_where_the_push_exceeds_its_side(left: float, right: fl
     after = (run.time > leaves.time) & (run.time < leaves.time + 2.0)
     since = run.time[after] - leaves.time
     assert run["car.speed"][after] == pytest.approx(rate * since**2 / (2.0 * MASS), rel=1e-6, abs=1e-9)
+
+
+@pytest.mark.parametrize("amplitude", [30.0, 120.0, 190.0])
+def test_a_push_that_swings_within_the_valley_moves_nothing(amplitude: float) -> None:
+    """One of its sides holds alone for a while, then neither, then the other one."""
+    push = cw.Sine(amplitude=amplitude, frequency=1.0)
+    run = _car([(0.0, 10.0), (50.0, 0.0), (100.0, 15.0)], 0.012, push, x=50.0).simulate(5.0)
+    assert run.status == "done"
+    assert len(run.events) == 0
+    assert run["road.position"] == pytest.approx(50.0, abs=1e-12)
+    held = MASS * G * np.sin(np.arctan(run["road.slope"])) - amplitude * np.sin(2.0 * math.pi * run.time)
+    assert np.all(np.abs(held) <= MASS * G * 0.012 + 1e-6)
 
 
 @pytest.mark.parametrize("seed", seeds(8))

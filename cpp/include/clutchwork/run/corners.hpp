@@ -142,8 +142,9 @@ Status settle_between(Workspace<T>& ws, const AtCorner<T>& at, const T& present,
   // what breaks away on one side may be held between
   for (int c = 0; c < ws.sys.contacts; ++c) ws.contact.forced[c] = 0;
   int way = 0;
-  // one side may hold alone, or be left
+  // the other side may hold alone, or be left; the present one has given way, and holds again by round-off alone
   for (const int side : {forward, backward}) {
+    if (value(present - (side > 0 ? at.corner.behind : at.corner.before)) == 0) continue;
     const Status status = decide_on(ws, at, side, decide, way);
     if (status == Status::running && (way == 0 || way == side)) return status;
   }
