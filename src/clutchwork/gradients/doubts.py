@@ -38,6 +38,7 @@ from clutchwork.gradients.primal import SAME
 from clutchwork.gradients.resting_loads import resting_loads
 from clutchwork.gradients.runs import Run, RunPoint, Runs
 from clutchwork.sweeps.outputs import AtTimes, When
+from clutchwork.gradients.staying import Staying
 
 Array = NDArray[np.float64]
 Mask = NDArray[np.bool_]
@@ -185,6 +186,8 @@ class Doubts:
             yield Doubt(why, self._up_to(time), self._all)
             if abs(time - begin) <= SAME * (1.0 + abs(begin)):
                 yield from self._of_start(why)
+        for time, why, numbers in Staying(self.runs, self.point, self.run).found():
+            yield Doubt(why, self._up_to(time), numbers)
         for why in begins_unloaded(system, primal.grazes, sizes):
             yield from self._of_start(why)
         for time, why in jumping_together(system, primal.grazes, sizes):

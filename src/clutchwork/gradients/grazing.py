@@ -38,7 +38,8 @@ TOUCHED = 1e-5
 # so many changes within so long [s] are refused
 CROWD, CROWDED = 6, 1e-4
 BY_NAME = {name: number for number, (name, _) in CAUSES.items()}
-BORDERS = ("line", "law", "process", "flip")
+PIECES = ("line", "law")
+BORDERS = (*PIECES, "process", "flip")
 # at these something may stay, though nothing moves with them
 STAYS = ("multiplier", "set", "bend")
 # kind of a jump of a torque that no guard sees
@@ -60,6 +61,12 @@ def guards(effect: str) -> tuple[int, ...]:
 def borders() -> tuple[int, ...]:
     """Numbers in the core of the guards where another piece of a law, a table or a process begins."""
     return tuple(number for number, (name, _) in enumerate(derivatives().guards) if name in BORDERS)
+
+
+@cache
+def pieces() -> tuple[int, ...]:
+    """Numbers in the core of the guards where another piece of a law or a table begins, over what moves alone."""
+    return tuple(number for number, (name, _) in enumerate(derivatives().guards) if name in PIECES)
 
 
 @cache

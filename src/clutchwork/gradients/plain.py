@@ -71,9 +71,12 @@ class PlainRuns:
             for n in range(len(systems))
         ]
 
-    def rows_at(self, system: bytes, columns: Sequence[int], times: Array) -> Array:
-        """Numbers of the rows of one run at instants."""
-        found: Array = self._call([system], columns, 0, times)[2][0]
+    def rows_at(self, system: bytes, columns: Sequence[int], times: Array, t_end: float | None = None) -> Array:
+        """Numbers of the rows of one run at instants.
+
+        Parameters: t_end, of a run that is not to go on to its end [s].
+        """
+        found: Array = self._call([system], columns, 0, times, t_end)[2][0]
         return found
 
     def with_steps(self, system: bytes, forms: Mapping[str, Form]) -> tuple[Run, Steps, dict[Output, float]]:
@@ -97,15 +100,20 @@ class PlainRuns:
         by_rows: dict[Output, float] = {one: _by_rows(one, run, steps, own[0][one.signal]) for one in ones}
         return run, whole.inside() if split is whole else split, by_rows
 
-    def _call(self, systems: Sequence[bytes], columns: Sequence[int], parts: int, instants: Array | None = None) -> Any:
+    def _call(
+        self,
+        systems: Sequence[bytes],
+        columns: Sequence[int],
+        parts: int,
+        instants: Array | None = None,
+        t_end: float | None = None,
+    ) -> Any:
         count = len(systems)
         choice = np.arange(count, dtype=np.int64).reshape(-1, 1)
         times = np.zeros(0) if parts else self.wanted.grid if instants is None else instants
-        threads = min(self.threads, max(1, count // 2))
+        threads, end = min(self.threads, max(1, count // 2)), self.wanted.t_end if t_end is None else t_end
         options, kept = list(self.options.items()), np.array(columns, dtype=np.int64)
-        found = core().sweep(
-            list(systems), [], choice, options, self.wanted.t_end, times, parts, kept, True, threads, None
-        )
+        found = core().sweep(list(systems), [], choice, options, end, times, parts, kept, True, threads, None)
         if found[4] is not None:
             raise found[4]
         return found
