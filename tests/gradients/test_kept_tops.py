@@ -254,3 +254,23 @@ def test_the_sharp_top_of_a_blow_by_what_moves_it(rtol: float) -> None:
     d.add(cw.Damper("l", base=d.housing, follower=g, damping=0.05))
     f = cw.differentiable(d, 1.0, of=cw.minimum("dog.power"), by="g.speed", rtol=rtol, atol=rtol / 100)
     assert f.gradient().matrix[0, 0] == pytest.approx(-13384.65661, rel=1e-6)
+
+
+@pytest.mark.parametrize(("kind", "sign"), [(cw.peak, 1.0), (cw.peak, -1.0), (cw.maximum, 1.0), (cw.minimum, -1.0)])
+def test_a_top_at_a_jump_is_none_of_a_plateau_that_is_as_large_later(kind, sign) -> None:
+    # what leads from the jump to the plateau took the top before the jump with it
+    d = cw.Driveline("jump")
+    a = d.shaft("a", inertia=0.5)
+    points = [(0.0, 0.0), (0.15, sign * 40.0), (0.15, sign * 20.0), (0.4, sign * 40.0)]
+    d.add(cw.Torque("t", shaft=a, torque=cw.Table(points)))
+    by = ["t.torque.values[2]", "t.torque.values[4]"]
+    with pytest.raises(cw.NoGradient, match=r"is reached at 0\.15 s and at 0\.4 s"):
+        derivatives(d, 0.5, of=kind("a.acceleration"), by=by, **TIGHT)
+    grows = np.array([[0.0, 0.0]]), np.array([[2.0, 2.0]])
+    # as numbers grow, so does a maximum, and of a table below zero a peak as they fall
+    left, right = grows if sign > 0 else grows[::-1]
+    if kind is cw.peak and sign < 0:
+        left, right = -left, -right
+    for side, wanted in (("left", left), ("right", right)):
+        found = derivatives(d, 0.5, of=kind("a.acceleration"), by=by, side=side, **TIGHT)
+        np.testing.assert_allclose(found.matrix, wanted, atol=1e-9)

@@ -219,22 +219,27 @@ def apart(primal: Primal, found: list[Located]) -> list[Located]:
 def _without_slopes(found: list[Located], kinds: Places) -> list[Located]:
     """Without those that lead to a plateau, which a law or a signal makes from one instant on."""
     left = [one for one in found if not one.is_level]
-    ends = {(one.sign, one.step, way) for one in found if one.is_level for way in (-1, 1)}
+    ends = {(one.sign, one.step, way, True) for one in found if one.is_level for way in (-1, 1)}
     while True:
         gone = [one for one in left if any(_leads_to(one, end, kinds) for end in ends)]
         if not gone:
             return [one for one in found if one.is_level or one in left]
-        # from there on all that is joined to them
-        ends |= {(one.sign, one.step, 0) for one in gone}
+        # from there on all that is joined to them where they are as large
+        ends |= {(one.sign, one.step, way, False) for one in gone for way in (-1, 1) if _reaches(one, way)}
         left = [one for one in left if one not in gone]
 
 
-def _leads_to(one: Located, end: tuple[float, int, int], kinds: Places) -> bool:
-    """Whether it is as large up to the step of a plateau beside it; of what was joined to it by any way."""
-    sign, step, way = end
-    if one.sign != sign or abs(one.step - step) != 1 or (way != 0 and kinds[max(one.step, step)] == SMOOTH):
+def _leads_to(one: Located, end: tuple[float, int, int, bool], kinds: Places) -> bool:
+    """Whether it is as large up to a step beside it, on one side of that: of a plateau, or what was joined to one."""
+    sign, step, way, is_level = end
+    if one.sign != sign or one.step - step != way or (is_level and kinds[max(one.step, step)] == SMOOTH):
         return False
-    place = int(step > one.step)
+    return _reaches(one, -way)
+
+
+def _reaches(one: Located, way: int) -> bool:
+    """Whether it is as large up to an end of its step: -1, where that begins, or 1."""
+    place = int(way > 0)
     return one.is_flat or one.share == place or one.holds[place]
 
 
