@@ -21,6 +21,7 @@ from clutchwork.gradients.at_limits import at_limits
 from clutchwork.gradients.at_stops import met_at_the_end, met_otherwise
 from clutchwork.gradients.beginning import at_border, at_rest, at_rest_on_a_border, at_zero
 from clutchwork.gradients.bent_formulas import bent_formulas
+from clutchwork.gradients.begins_at_knots import begun_at_knots
 from clutchwork.gradients.contact_at_rest import unpressed
 from clutchwork.gradients.grazing import (
     arriving_together,
@@ -221,6 +222,11 @@ class Doubts:
             yield Doubt(why, every, numbers)
         for time, why, numbers in held_fast(chart, words, self.point.slopes, self.run.primal.events):
             yield Doubt(why, self._up_to(time), numbers, width=REBOUND)
+        if not chart.stays("segment_time"):
+            for why, numbers in begun_at_knots(chart, words, self.point.slopes, self.runs.wanted.begin):
+                yield Doubt(why, every, numbers)
+        if chart.stays(*STARTS):
+            return
         names = [one.name for one in self.runs.task.parameters]
         begin, end = self.runs.wanted.begin, self.runs.wanted.t_end
         for one in unpressed(chart, words, self.point.slopes, names, self.point.sizes, (begin, end)):

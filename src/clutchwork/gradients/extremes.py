@@ -14,7 +14,7 @@ from clutchwork.gradients import several_steps
 from clutchwork.gradients.functional import Functional
 from clutchwork.gradients.held_torques import add_held, is_torn, torque_at_limit
 from clutchwork.gradients.instants import add_shift, add_turn, missed
-from clutchwork.gradients.primal import SMOOTH, Primal
+from clutchwork.gradients.primal import SAME, SMOOTH, Primal
 from clutchwork.gradients.sides import Sides, jumps, of_bend
 from clutchwork.gradients.signals import add_signal, signal_at
 from clutchwork.gradients.steps import Steps
@@ -255,9 +255,16 @@ def further(one: Extreme, value: float, other: float) -> float:
 
 
 def kinks(primal: Primal, found: list[Located]) -> tuple[float, ...]:
-    """Instants of extremes at which knots meet or move at an end of the run [s]."""
-    there = {one.begins for one in found}
-    return tuple(time for time, place in primal.meets if place in there)
+    """Instants of extremes at which knots meet or move at an end of the run [s]; and that end where a signal jumps.
+
+    There it has a value behind the end that is one of the run as soon as the knot comes before it.
+    """
+    there, jumps = {one.begins for one in found}, primal.grazes[primal.grazes[:, 1] < 0, 0]
+    return tuple(
+        time
+        for time, place in primal.meets
+        if place in there or (place == len(primal.steps) and np.any(np.abs(jumps - time) <= SAME * (1.0 + abs(time))))
+    )
 
 
 def add_extreme(primal: Primal, one: Extreme, found: Located, into: Functional) -> list[tuple[Functional, float]]:

@@ -108,7 +108,8 @@ def _change(primal: Primal, signal: str, begin: float) -> Measure:
     into, rows = primal.functional(), np.array([primal.row(begin), primal.row(primal.t_end)])
     add_signal(primal, signal, rows, np.array([-1.0, 1.0]), into)
     first, last = signal_at(primal, signal, rows)
-    return Measure(float(last - first), (into,), primal.t_end)
+    # it ends as what is asked for at the end does
+    return Measure(float(last - first), (into,), primal.t_end, at=primal.t_end)
 
 
 def number_of(events: Array, one: When, contacts: tuple[str, ...]) -> int:
