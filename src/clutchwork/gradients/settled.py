@@ -27,6 +27,8 @@ STEP = 1e-6
 ALIKE, BY_TOLERANCE = 1e-6, 100.0
 # nearer by, of that step; derivatives at both that differ by less are a line over the step, of their size
 NEARER, NEARLY = 0.1, 1e-2
+# by how much both sides of a curve through the point may differ there, of what is alike at them
+CURVED = 1e-4
 # a number of no known size is no larger than so many of its unit: what it does up to there is looked at
 LARGEST = 1e6
 # values that differ by more on both sides jump, of their size, and beside what their derivatives say
@@ -135,6 +137,8 @@ class Settling:
         if np.any(open_ & ~same):
             # what is more than the derivatives at the point: the limits of those beside it
             nearer, is_run = self._beside(numbers, beside, NEARER * steps)
+            if is_run.all():
+                same |= self._goes_on(own, there, nearer, numbers)
             limits = (nearer - NEARER * there) / (1.0 - NEARER)
             nearly = np.abs(nearer - there) <= NEARLY * np.maximum(np.abs(nearer), np.abs(there))
             # one that falls with the distance itself, as that of a square at zero, ends there
@@ -155,6 +159,18 @@ class Settling:
         if not len(there):
             return np.zeros(own.shape[1:], dtype=bool)
         found: Mask = np.logical_and.reduce([self._is_one(one, other, numbers) for one in own for other in there])
+        return found
+
+    def _goes_on(self, own: Array, there: Array, nearer: Array, numbers: NDArray[np.intp]) -> Mask:
+        """Whether derivatives at the point are those of one curve through both sides, which may be far from a line.
+
+        What is alike on both sides is that at the point and a square of the distance; what is not goes with it.
+        """
+        far, near = there.mean(axis=0), nearer.mean(axis=0)
+        middle = (near - NEARER**2 * far) / (1.0 - NEARER**2)
+        jump = (np.diff(nearer, axis=0)[0] - NEARER * np.diff(there, axis=0)[0]) / (1.0 - NEARER)
+        is_middle = np.logical_and.reduce([self._is_one(middle, one, numbers) for one in own])
+        found: Mask = is_middle & (np.abs(jump) <= CURVED * np.abs(middle))
         return found
 
     def _beside(
