@@ -172,3 +172,17 @@ def test_a_lag_has_a_derivative_unless_it_is_zero() -> None:
     function = cw.differentiable(turbine(0.05), 0.1, of="turbine.speed", by="tc.lag", rtol=1e-10, atol=1e-12)
     around = function(function.x0 + 1e-4) - function(function.x0 - 1e-4)
     assert function.jacobian(function.x0)[0] == pytest.approx(around / 2e-4, rel=1e-5)
+
+
+@pytest.mark.parametrize(
+    ("of", "words"),
+    [
+        ([cw.at("ball1.speed", 0.1), cw.at("ball1.speed", 0.2)], r"name them: of=\{'first'"),
+        ([], "of is missing"),
+    ],
+)
+def test_what_is_wrong_with_values_is_said_in_the_words_of_the_call(of, words) -> None:
+    with pytest.raises(cw.UseError, match=words):
+        cw.differentiable(balls("none"), 0.3, of=of, by="ball1.mass")
+    with pytest.raises(cw.UseError, match=words):
+        balls("none").simulate(0.3).gradient(of=of, by="ball1.mass")

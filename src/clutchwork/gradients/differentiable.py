@@ -254,7 +254,7 @@ def made(
     mistakes = Mistakes()
     mistakes.found += _faults(options, side)
     count = mistakes.caught(lambda: threads_of(threads, call), 1)
-    outputs: dict[str, Output] = mistakes.caught(lambda: asked(of), {})
+    outputs: dict[str, Output] = mistakes.caught(lambda: asked(of, "of"), {})
     mistakes.caught(lambda: refuse_outputs(system, outputs, options, t_end), None)
     chosen: tuple[Tunable, ...] = mistakes.caught(lambda: parameters(system, by), ())
     mistakes.refuse(call)

@@ -358,8 +358,11 @@ def _counted(call: str, number: object) -> int:
     return number
 
 
-def asked(outputs: Any) -> dict[str, Output]:
-    """The outputs that a call means, by the name that the result gives them."""
+def asked(outputs: Any, argument: str = "outputs") -> dict[str, Output]:
+    """The outputs that a call means, by the name that the result gives them.
+
+    Parameters: argument, what the call names them by.
+    """
     mistakes = Mistakes()
     if isinstance(outputs, Mapping) and outputs:
         by_name = {str(name): mistakes.caught(partial(_output, one), AtEnd("")) for name, one in outputs.items()}
@@ -371,11 +374,12 @@ def asked(outputs: Any) -> dict[str, Output]:
     found = dict[str, Output]()
     for one in made:
         if one.name in found and found[one.name] != one:
-            remedy = "name them: outputs={'first': ..., 'second': ...}"
+            remedy = f"name them: {argument}={{'first': ..., 'second': ...}}"
             raise UseError("sweep", [f"two outputs are called {one.name!r}; {remedy}"])
         found[one.name] = one
     if not found:
-        raise UseError("sweep", ["outputs are missing; name signals, such as 'load.speed', or cw.lock('c1')"])
+        are = "are" if argument.endswith("s") else "is"
+        raise UseError("sweep", [f"{argument} {are} missing; name signals, such as 'load.speed', or cw.lock('c1')"])
     return found
 
 
