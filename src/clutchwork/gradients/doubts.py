@@ -20,8 +20,8 @@ from clutchwork.gradients.at_bounds import held_fast, holding_nothing, without_l
 from clutchwork.gradients.at_limits import at_limits
 from clutchwork.gradients.at_stops import met_at_the_end, met_otherwise
 from clutchwork.gradients.beginning import at_border, at_rest, at_rest_on_a_border, at_zero
-from clutchwork.gradients.bent_formulas import bent_formulas
 from clutchwork.gradients.begins_at_knots import begun_at_knots
+from clutchwork.gradients.bent_formulas import bent_formulas
 from clutchwork.gradients.contact_at_rest import unpressed
 from clutchwork.gradients.grazing import (
     arriving_together,
@@ -38,8 +38,8 @@ from clutchwork.gradients.lines import Line
 from clutchwork.gradients.primal import SAME
 from clutchwork.gradients.resting_loads import resting_loads
 from clutchwork.gradients.runs import Run, RunPoint, Runs
-from clutchwork.sweeps.outputs import AtTimes, When
 from clutchwork.gradients.staying import Staying
+from clutchwork.sweeps.outputs import AtTimes, When
 
 Array = NDArray[np.float64]
 Mask = NDArray[np.bool_]
@@ -225,8 +225,6 @@ class Doubts:
         if not chart.stays("segment_time"):
             for why, numbers in begun_at_knots(chart, words, self.point.slopes, self.runs.wanted.begin):
                 yield Doubt(why, every, numbers)
-        if chart.stays(*STARTS):
-            return
         names = [one.name for one in self.runs.task.parameters]
         begin, end = self.runs.wanted.begin, self.runs.wanted.t_end
         for one in unpressed(chart, words, self.point.slopes, names, self.point.sizes, (begin, end)):
