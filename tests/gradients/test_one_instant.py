@@ -60,3 +60,18 @@ def test_two_freewheels_that_close_at_one_instant() -> None:
     found = cw.differentiable(d, 1.5, of=of, by=["t_m.torque", "t_n.torque"], **TIGHT).gradient().matrix
     # each stops after v / t
     np.testing.assert_allclose(found, np.eye(2), rtol=1e-6, atol=1e-6)
+
+
+def test_a_gear_and_the_brake_of_its_shaft_stop_as_one() -> None:
+    """Inertias and ratio are round: the words that an inertia reaches are more than those of the masses."""
+    d = cw.Driveline("train")
+    a, b = d.shaft("a", inertia=1.0, speed=10.0), d.shaft("b", inertia=1.0)
+    d.add(cw.LossyGear("gear", input=a, output=b, ratio=2.0, efficiency=0.97))
+    law = cw.Coulomb(static=1.0, kinetic=1.0)
+    d.add(cw.Brake("brake", shaft=a, friction=law, gain=1.0, normal_force=20.0))
+    found = cw.differentiable(d, 1.0, of="a.angle", by=["a.inertia", "b.inertia", "brake.gain"], **TIGHT).gradient()
+    assert found.problems == ()
+    f = cw.differentiable(d, 1.0, of="a.angle", by=["a.inertia", "b.inertia", "brake.gain"], rtol=1e-11, atol=1e-13)
+    steps = 1e-5 * np.eye(3)
+    wanted = [(f(f.x0 + step)[0] - f(f.x0 - step)[0]) / 2e-5 for step in steps]
+    np.testing.assert_allclose(found.matrix[0], wanted, rtol=1e-6)

@@ -152,3 +152,36 @@ def test_a_car_that_starts_at_a_corner_is_on_the_side_to_which_it_goes(push: flo
     ahead, back = push - weight - rolls, push + MASS * G * c0
     wanted = max(ahead, 0.0) if ahead > 0.0 else min(back, 0.0)
     assert at_end(run, "car.speed") == pytest.approx(wanted / MASS, abs=1e-9)
+
+
+def in_a_valley(push: object, **given: object) -> cw.Driveline:
+    """A car at the bottom of a valley that falls by 0.2 and rises by 0.4."""
+    d = cw.Driveline("corner")
+    car = d.mass("car", mass=100.0)
+    road = d.add(cw.Road("road", elevation=[(0.0, 10.0), (50.0, 0.0), (100.0, 20.0)], speed=car, initial_position=50.0))
+    d.add(cw.Vehicle("v", mass=car, rolling_coefficient=0.012, slope=road))
+    d.add(cw.Torque("push", shaft=car, torque=push, **given))
+    return d
+
+
+def test_a_slope_between_both_sides_has_no_derivative() -> None:
+    d = in_a_valley(50.0)
+    found = cw.differentiable(d, 1.0, of=["road.slope", "car.speed"], by="push.torque").gradient()
+    assert np.isnan(found.matrix[0, 0])
+    assert found.matrix[1, 0] == 0.0
+    assert "ends at a corner at rest" in found.problems[0]
+
+
+def test_a_freewheel_that_only_a_trial_would_overload_stays_sound() -> None:
+    """At the foot of a hill of 0.55 a car is held by its freewheel: the whole slope would break that."""
+    d = cw.Driveline("foot")
+    car = d.mass("car", mass=100.0)
+    road = d.add(cw.Road("road", elevation=[(0.0, 0.0), (50.0, 0.0), (100.0, 27.5)], speed=car, initial_position=50.0))
+    d.add(cw.Vehicle("v", mass=car, rolling_coefficient=0.012, slope=road))
+    push = cw.Step(height=100.0, start=1.0)
+    d.add(cw.Torque("push", shaft=car, torque=push))
+    d.add(cw.SpragClutch("f", base=d.housing, follower=car, holding=300.0))
+    run = d.simulate(2.0)
+    assert run.status == "done"
+    assert not [event for event in run.events if event.cause == "fault"]
+    assert np.abs(run["car.speed"]).max() < 1e-9

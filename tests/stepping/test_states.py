@@ -615,3 +615,17 @@ def test_a_drive_whose_command_is_constant_since_before_the_start_rests_there() 
 def test_all_that_begin_with_a_command_are_known() -> None:
     kinds = {one.__name__ for one in REGISTRY[Role.PROCESS].values() if one.begins_with is not Component.begins_with}
     assert kinds == set(FOLLOWING)
+
+
+@pytest.mark.parametrize("order", [1, -1])
+def test_a_command_may_begin_with_a_command_itself(order: int) -> None:
+    """Whatever stands first."""
+    d = cw.Driveline("chain")
+    a, b = d.shaft("a", inertia=1.0, speed=10.0), d.shaft("b", inertia=1.0)
+    second = cw.RatioActuator("second", command=cw.Ramp(offset=1.0, height=2.0, duration=2.0), lag=0.1)
+    first = cw.RatioActuator("first", command=second, lag=0.1)
+    for one in (first, second)[::order]:
+        d.add(one)
+    d.add(cw.VariableRatio("cvt", input=a, output=b, ratio=first))
+    run = d.simulate(1.5, t_start=1.0)
+    assert (run["first.ratio"][0], run["second.ratio"][0]) == pytest.approx((2.0, 2.0))

@@ -102,6 +102,9 @@ class SystemParameter:
             return None
         starts, made = self._system.starts, known.derivatives(self.name)
         found = {starts[array] // 8 + place: slope for (array, place), slope in made.items()}
+        # where inertias are round, a word beside those of the masses may depend on them too
+        if not found.keys() >= set(self.words.tolist()):
+            return None
         return np.array([found[word] for word in self.words.tolist()])
 
     @cached_property

@@ -68,15 +68,19 @@ def holding_nothing(system: System, primal: Primal) -> Iterator[str]:
     lets_go = (events[:, AT["from"]] == LOCKED) & (events[:, AT["torque_after"]] == 0.0)
     left = set(events[lets_go, AT["contact"]].astype(int).tolist())
     for number, contact in enumerate(system.contacts):
-        if follows_load(contact) and (held[number] or number in left):
+        if follows_load(contact) and not _has_table(contact) and (held[number] or number in left):
             yield f"{contact.name} is locked without capacity, and slips as soon as what it joins moves apart"
+
+
+def _has_table(contact: Component) -> bool:
+    """Whether its losses are those of a gear, which has some of its own at any speed."""
+    return any(item.name == "loss_table" for item, _ in specs(type(contact), "numbers"))
 
 
 def _ideal(chart: Chart, words: Array, system: System, contact: Component) -> Places:
     """Words of losses of a contact that has none, or has none at a speed."""
-    known = {item.name: spec for item, spec in specs(type(contact), "param", "numbers")}
     begin, (first, _) = chart.words_in("params")[0], chart.words_in("points")
-    if "loss_table" not in known:
+    if not _has_table(contact):
         own = [begin + parameter_place(system.numbered, contact, name) for name in ("drive", "coast")]
         return np.array(own) if not words[own].any() else np.zeros(0, dtype=np.intp)
     place = begin + parameter_place(system.numbered, contact, "loss_table")

@@ -17,6 +17,7 @@ from numpy.typing import NDArray
 
 from clutchwork.base.classes import dataclass
 from clutchwork.gradients.at_bounds import held_fast, holding_nothing, without_losses
+from clutchwork.gradients.at_corners import resting_at_corners
 from clutchwork.gradients.at_limits import at_limits
 from clutchwork.gradients.at_stops import met_at_the_end, met_otherwise
 from clutchwork.gradients.beginning import at_border, at_rest, at_rest_on_a_border, at_zero
@@ -196,7 +197,7 @@ class Doubts:
         found = chain(
             crowded(primal.events, contacts),
             struck_together(system, primal.events, contacts),
-            arriving_together(primal.events, begin, contacts),
+            arriving_together(system, primal.events, begin, contacts),
             decided_at_knots(primal.events, primal.grazes, inside, contacts),
             met_otherwise(system, primal.events, primal.grazes, contacts),
         )
@@ -218,6 +219,9 @@ class Doubts:
             yield Doubt(why, every, numbers)
         for why in holding_nothing(self.runs.task.system, self.run.primal):
             yield Doubt(why, every, self._all)
+        for why, columns in resting_at_corners(self.runs.task.system, self.run.primal):
+            open_ = np.array([np.isin(line.columns, columns).any() for line in self.lines])
+            yield Doubt(why, open_, self._all, is_closed=True)
         for why, numbers in self._resting():
             yield Doubt(why, every, numbers)
         for time, why, numbers in held_fast(chart, words, self.point.slopes, self.run.primal.events):

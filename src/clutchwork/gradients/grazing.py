@@ -46,6 +46,8 @@ STAYS = ("multiplier", "set", "bend")
 UNSEEN = 1000
 ASK = "; ask for one side of it"
 IMPACT, JAM, DRIVEN = BY_NAME["impact"], BY_NAME["jam"], (BY_NAME["input"], BY_NAME["other event"])
+# slips that are multiples of each other, but for the round-off of their rates
+ALIKE = 1e-12
 # causes of events that are decided together with others
 TAKEN_ALONG = (IMPACT, BY_NAME["other event"])
 AT = {name: column for column, (name, _) in enumerate(EVENT)}
@@ -239,7 +241,9 @@ def _struck(hit: Array, contacts: Sequence[str]) -> Iterator[tuple[float, str]]:
         return
 
 
-def arriving_together(events: Array, begin: float, contacts: Sequence[str]) -> Iterator[tuple[float, str]]:
+def arriving_together(
+    system: System, events: Array, begin: float, contacts: Sequence[str]
+) -> Iterator[tuple[float, str]]:
     """Contacts that come to rest, or are struck, at one instant, each for itself: they move with numbers of their own.
 
     An impact decides about all contacts, and so does a slip that ends: what is known of the instant is that of one.
@@ -251,11 +255,23 @@ def arriving_together(events: Array, begin: float, contacts: Sequence[str]) -> I
     known = events[(struck | lands) & later & (events[:, AT["contact"]] >= 0.0)]
     for place in np.flatnonzero(np.diff(known[:, AT["time"]]) <= ONE_INSTANT * 1e-3).tolist():
         pair = known[place : place + 2]
-        if pair[0, AT["contact"]] != pair[1, AT["contact"]] and np.isin(pair[:, AT["cause"]], TAKEN_ALONG).any():
-            one, other = (contacts[int(number)] for number in pair[:, AT["contact"]])
+        first, second = pair[:, AT["contact"]].astype(int).tolist()
+        if np.isin(pair[:, AT["cause"]], TAKEN_ALONG).any() and not _slip_alike(system, first, second):
+            one, other = contacts[first], contacts[second]
             time = float(pair[0, AT["time"]])
             yield time, f"{one} and {other} come to rest, or are struck, at one instant, {time:.9g} s; separate them"
             return
+
+
+def _slip_alike(system: System, one: int, other: int) -> bool:
+    """Whether the slip of a contact is a multiple of that of another: both end at one instant whatever is moved."""
+    arrays = system.arrays
+    ends, rows = arrays["contact_rate_end"], np.zeros((2, len(arrays["initial_speed"])))
+    for row, number in zip(rows, (one, other), strict=True):
+        own = slice(int(ends[number - 1]) if number else 0, int(ends[number]))
+        row[arrays["contact_rate_column"][own]] = arrays["contact_rate_value"][own]
+    sizes = np.linalg.norm(rows, axis=1)
+    return bool(abs(rows[0] @ rows[1]) >= (1.0 - ALIKE) * sizes[0] * sizes[1])
 
 
 def decided_at_knots(

@@ -22,7 +22,7 @@ Places = NDArray[np.intp]
 # so near to a border a value rests there, of what numbers change it by, and of the relative tolerance of the run
 NEAR, BY_TOLERANCE = 1e-9, 1.0
 # at so many knots it is looked at
-MOST_KNOTS = 64
+MOST_KNOTS = 1000
 
 
 @dataclass(frozen=True, eq=False)

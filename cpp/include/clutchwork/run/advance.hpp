@@ -128,11 +128,14 @@ void follow_start_ratios(Workspace<T>& ws) {
   }
 }
 
-/// States that follow a command begin with what it is where a run begins.
+/// States that follow a command begin with what it is where a run begins; it may be such a state itself, of a process
+/// that stands anywhere.
 template <class T>
 void begin_with_commands(Workspace<T>& ws) {
   const auto& sys = ws.sys;
-  for (int i = 0; i < sys.processes; ++i) {
+  const int n = int(sys.processes);
+  for (int k = 0; k < n * n; ++k) {
+    const int i = k % n;
     if (sys.process_begins[i] < 0) continue;
     const int at = int(sys.process_state[i]);
     const T unit(sys.shared_scale[at - (sys.states - sys.shared)]);

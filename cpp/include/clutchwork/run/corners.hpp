@@ -55,12 +55,43 @@ double set_breaks_away(Workspace<T>& ws, int d) {
   return value(ws.geometry.mass_weighted.times(d, x));
 }
 
-/// A corner, the process that is there, its first state, and the direction of its speed.
+/// What a decision may leave for good: events of contacts that fail in it.
+template <class T>
+struct Lasting {
+  std::int64_t events;
+  decltype(Workspace<T>::statistics) statistics;
+  decltype(Workspace<T>::detail) detail;
+  int failed;
+};
+
+/// A corner, the process that is there, its first state, and the direction of its speed; what was before it is decided.
 template <class T>
 struct AtCorner {
   Corner<T> corner;
   int process, state, direction;
+  Lasting<T> before;
 };
+
+/// Note it.
+template <class T>
+Lasting<T> lasting(Workspace<T>& ws) {
+  const auto& contact = ws.contact;
+  for (int c = 0; c < ws.sys.contacts; ++c)
+    contact.untried[c] = 4 * contact.fault[c] + 2 * contact.loaded[c] + contact.pressed[c];
+  return {ws.events.n, ws.statistics, ws.detail, contact.failed};
+}
+
+/// Take back what failed in a trial.
+template <class T>
+void take_back(Workspace<T>& ws, const Lasting<T>& before) {
+  auto& contact = ws.contact;
+  for (int c = 0; c < ws.sys.contacts; ++c) {
+    const int was = contact.untried[c];
+    contact.fault[c] = was / 4, contact.loaded[c] = was / 2 % 2, contact.pressed[c] = was % 2;
+  }
+  ws.events.n = before.events, ws.statistics = before.statistics, ws.detail = before.detail;
+  contact.failed = before.failed;
+}
 
 /// Whether process c is at a corner, at rest.
 template <class T>
@@ -92,9 +123,11 @@ int way_from(Workspace<T>& ws, const AtCorner<T>& at) {
   return leads > noise ? forward : leads < -noise ? backward : 0;
 }
 
-/// The decision for one value of what turns, on one piece. `running`: it was made; then it leads that way.
+/// The decision for one value of what turns, on one piece, after others that were tried. `running`: it was made; then
+/// it leads that way.
 template <class T, class Decide>
 Status decide_with(Workspace<T>& ws, const AtCorner<T>& at, const T& turned, int piece, Decide&& decide, int& way) {
+  take_back(ws, at.before);
   ws.state[at.state + at.corner.moves] = at.corner.place;
   ws.state[at.state + at.corner.turns] = turned;
   ws.shared.piece[at.process] = piece;
@@ -112,6 +145,9 @@ Status decide_on(Workspace<T>& ws, const AtCorner<T>& at, int side, Decide&& dec
   return decide_with(ws, at, turned, at.corner.piece + (side > 0 ? 1 : 0), decide, way);
 }
 
+/// Of a trial without modes.
+inline constexpr int nowhere = 2;
+
 /// The value between both sides at which what rests there has least to hold, found by halving; motions lead forward
 /// below it, backward above it. False: nothing holds.
 template <class T, class Try>
@@ -121,6 +157,7 @@ bool find_balance(const AtCorner<T>& at, Try&& leads, T& balance) {
   int way = forward;
   for (int k = 0; k < halvings && way != 0; ++k) {
     middle = 0.5 * (low + high), way = leads(T(middle));
+    if (abs(way) > 1) return false;
     if (way != 0) (way > 0 ? low : high) = middle;
   }
   if (way != 0) return false;
@@ -149,7 +186,11 @@ Status settle_between(Workspace<T>& ws, const AtCorner<T>& at, const T& present,
     if (status == Status::running && (way == 0 || way == side)) return status;
   }
   T rests = present;
-  find_balance(at, [&](const T& turned) { return decide_with(ws, at, turned, piece, decide, way), way; }, rests);
+  // what has no modes holds nothing
+  auto leads = [&](const T& turned) {
+    return decide_with(ws, at, turned, piece, decide, way) == Status::running ? way : nowhere;
+  };
+  find_balance(at, leads, rests);
   return decide_with(ws, at, rests, piece, decide, way);
 }
 
@@ -188,6 +229,7 @@ Status settle_at_corners(Workspace<T>& ws, Decide&& decide) {
   for (int i = 0; i < ws.guard.n_processes; ++i) {
     AtCorner<T> at;
     if (!rests_at_corner(ws, ws.guard.process[i], at)) continue;
+    at.before = lasting(ws);
     const Status status = settle_at_corner(ws, at, decide);
     if (status != Status::running) return status;
   }

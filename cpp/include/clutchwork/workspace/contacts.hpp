@@ -17,6 +17,7 @@ struct Contacts {
   int* side = nullptr;                        ///< of each stop: the end at which it is closed, -1 or 1, 0: it is open
   int* struck = nullptr;                      ///< stops that have met an end at this instant
   double* met_at = nullptr;                   ///< [s] when a stop met an end last, or another contact was let go last
+  int* untried = nullptr;                     ///< its fault, and whether it is loaded and pressed, before a trial
   int failed = -1;                            ///< contact whose fault ends the run
   double forced_time = -infinity;             ///< [s]
 
@@ -26,7 +27,7 @@ struct Contacts {
     a.keep(p.pressed, n.contacts, 0, 1), a.keep(p.loaded, n.contacts, 0, 1);
     a.take(p.compliant, n.contacts), a.keep(p.fault, n.contacts, 0, choice::words<choice::Fault> - 1);
     a.keep(p.impulse, n.contacts, 0, 1), a.keep(p.side, n.contacts, -1, 1), a.take(p.struck, n.contacts);
-    a.take(p.met_at, n.contacts);
+    a.take(p.met_at, n.contacts), a.take(p.untried, n.contacts);
   }
 };
 
