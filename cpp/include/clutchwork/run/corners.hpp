@@ -146,7 +146,7 @@ Status decide_on(Workspace<T>& ws, const AtCorner<T>& at, int side, Decide&& dec
 }
 
 /// Of a trial without modes.
-inline constexpr int nowhere = 2;
+inline constexpr int unsettled = 2;
 
 /// The value between both sides at which what rests there has least to hold, found by halving; motions lead forward
 /// below it, backward above it. False: nothing holds.
@@ -188,7 +188,7 @@ Status settle_between(Workspace<T>& ws, const AtCorner<T>& at, const T& present,
   T rests = present;
   // what has no modes holds nothing
   auto leads = [&](const T& turned) {
-    return decide_with(ws, at, turned, piece, decide, way) == Status::running ? way : nowhere;
+    return decide_with(ws, at, turned, piece, decide, way) == Status::running ? way : unsettled;
   };
   find_balance(at, leads, rests);
   return decide_with(ws, at, rests, piece, decide, way);
