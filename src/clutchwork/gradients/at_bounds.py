@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from clutchwork.assembly.patches import parameter_place
+from clutchwork.base.memoize import memoize
 from clutchwork.declare.schema import specs
 from clutchwork.gradients.grazing import AT, IMPACT
 from clutchwork.model.parts import is_stop
@@ -63,13 +64,24 @@ def without_losses(chart: Chart, words: Array, slopes: Slopes) -> Iterator[tuple
 
 def holding_nothing(system: System, primal: Primal) -> Iterator[str]:
     """Contacts that are locked though they can hold nothing: any difference of what they join lets them slip."""
+    alone = limited(system)
+    if not alone:
+        return
     row, columns, events = primal.rows[primal.row(primal.t_end)], primal.columns, primal.events
     held = (row[columns["contact_mode"]] == LOCKED) & (row[columns["contact_capacity"]] == 0.0)
     lets_go = (events[:, AT["from"]] == LOCKED) & (events[:, AT["torque_after"]] == 0.0)
     left = set(events[lets_go, AT["contact"]].astype(int).tolist())
-    for number, contact in enumerate(system.contacts):
-        if follows_load(contact) and not _has_table(contact) and (held[number] or number in left):
-            yield f"{contact.name} is locked without capacity, and slips as soon as what it joins moves apart"
+    for number in alone:
+        if held[number] or number in left:
+            name = system.contacts[number].name
+            yield f"{name} is locked without capacity, and slips as soon as what it joins moves apart"
+
+
+@memoize
+def limited(system: System) -> tuple[int, ...]:
+    """Limited slips, whose capacity is a share of their load."""
+    ones = enumerate(system.contacts)
+    return tuple(number for number, contact in ones if follows_load(contact) and not _has_table(contact))
 
 
 def _has_table(contact: Component) -> bool:

@@ -19,7 +19,7 @@ from clutchwork.base.classes import dataclass
 from clutchwork.gradients.at_bounds import held_fast, holding_nothing, without_losses
 from clutchwork.gradients.at_corners import resting_at_corners
 from clutchwork.gradients.at_limits import at_limits
-from clutchwork.gradients.at_stops import met_at_the_end, met_otherwise
+from clutchwork.gradients.at_stops import ends, met_at_the_end, met_otherwise
 from clutchwork.gradients.beginning import at_border, at_rest, at_rest_on_a_border, at_zero
 from clutchwork.gradients.begins_at_knots import begun_at_knots
 from clutchwork.gradients.bent_formulas import bent_formulas
@@ -248,10 +248,12 @@ class Doubts:
 
     def _ends(self) -> Iterator[Doubt]:
         """Events at the end of the run, and stops that are reached there: what is summed up may bend."""
-        end = self.run.primal.t_end
+        end, is_event = self.run.primal.t_end, bool(self._is_at(self.run.primal.t_end))
+        if not is_event and not ends(self.runs.task.system):
+            return
         asked = self._up_to(end * (1.0 - SAME)) & ~self._instants_asked
         sums = asked & np.array([line.at is None for line in self.lines])
-        if self._is_at(end) and sums.any():
+        if is_event and sums.any():
             why = f"an event is at the end of the run, {end:.9g} s, and moves; end it before or behind that"
             yield Doubt(why, sums, self._moving_events(end))
         for why, numbers in met_at_the_end(self.runs.task.system, self.point, self.run, end) if asked.any() else ():

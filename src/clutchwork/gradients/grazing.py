@@ -46,6 +46,7 @@ STAYS = ("multiplier", "set", "bend")
 UNSEEN = 1000
 ASK = "; ask for one side of it"
 IMPACT, JAM, DRIVEN = BY_NAME["impact"], BY_NAME["jam"], (BY_NAME["input"], BY_NAME["other event"])
+PAIR = 2
 # slips that are multiples of each other, but for the round-off of their rates
 ALIKE = 1e-12
 # causes of events that are decided together with others
@@ -249,6 +250,8 @@ def arriving_together(
     An impact decides about all contacts, and so does a slip that ends: what is known of the instant is that of one.
     Parameters: begin, of the run [s], which does not move.
     """
+    if len(events) < PAIR or np.diff(events[:, AT["time"]]).min() > ONE_INSTANT * 1e-3:
+        return
     struck = events[:, AT["cause"]] == IMPACT
     lands = (events[:, AT["to"]] == LOCKED) & (events[:, AT["from"]] != LOCKED)
     later = events[:, AT["time"]] > begin

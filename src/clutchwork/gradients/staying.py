@@ -64,14 +64,21 @@ class Staying:
         """Borders that do not move where something is from one instant on, or which it leaves at a knot."""
         grazes = self.run.primal.grazes
         moved = grazes[:, DIFFERENCE] * self.point.sizes.max(initial=0.0) > APART
-        known = np.flatnonzero(np.isin(grazes[:, KIND], pieces()) & (grazes[:, COMPONENT] >= 0) & ~moved)
-        return [grazes[place] for place in known if self._may_stay(grazes[place])]
+        known = grazes[np.isin(grazes[:, KIND], pieces()) & (grazes[:, COMPONENT] >= 0) & ~moved]
+        if not len(known):
+            return []
+        # what passes a border leaves it at once, but for a knot
+        knots = np.r_[-np.inf, self._knots, np.inf]
+        behind = np.searchsorted(knots, known[:, TIME])
+        away = np.minimum(knots[behind] - known[:, TIME], known[:, TIME] - knots[behind - 1])
+        is_near = away <= SAME * (1.0 + np.abs(known[:, TIME]))
+        return [one for one in known[is_near | (known[:, INDEX] == np.inf)] if self._may_stay(one)]
 
     def _may_stay(self, graze: Array) -> bool:
         """Whether nothing that is known without another run says that it leaves the border, or comes to it, at once."""
         time, begin = float(graze[TIME]), self.runs.wanted.begin
         if graze[INDEX] < np.inf:
-            return bool(np.any(np.abs(np.array(self._knots) - time) <= SAME * (1.0 + abs(time))))
+            return True
         if abs(time - begin) > SAME * (1.0 + abs(begin)):
             return True
         reach = self.runs.wanted.t_end - begin
