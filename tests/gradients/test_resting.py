@@ -253,7 +253,7 @@ def test_a_brake_that_stops_a_mass_exactly_at_a_stop():
     d, m = towards_a_stop(0.5)
     d.add(cw.Brake("b", shaft=m, friction=cw.Coulomb(static=1.0, kinetic=1.0), gain=1.0, normal_force=1.0))
     by = ["e.upper", "m.speed", "b.gain"]
-    left, right = both(d, 1.5, "m.position", by, "at one instant, 1 s")
+    left, right = both(d, 1.5, "m.position", by, "e is only just reached at 1 s")
     np.testing.assert_allclose(left[0], [1.0, 1.0, 0.0], rtol=1e-6, atol=1e-9)
     np.testing.assert_allclose(right[0], [0.0, 0.0, -0.5], rtol=1e-6, atol=1e-9)
 

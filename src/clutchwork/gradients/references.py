@@ -31,7 +31,7 @@ class Reference(NamedTuple):
     words: str  # what is said of a signal that has this value
 
 
-class Place(NamedTuple):
+class TakenOff(NamedTuple):
     """Where such a number stands: the signal that it is taken off, -1 of a state, its place among all parameters."""
 
     number: int
@@ -62,17 +62,17 @@ def touched(chart: Chart, slopes: Slopes) -> bool:
 
 
 @memoize
-def taken_off(system: System) -> tuple[Place, ...]:
+def taken_off(system: System) -> tuple[TakenOff, ...]:
     """Numbers that are taken off signals."""
     known = {item.name: number for number, item in enumerate(system.inputs)}
     return tuple(one for part in (*system.contacts, *system.processes) for one in _of(system, part, known))
 
 
-def _of(system: System, part: Component, known: dict[str, int]) -> Iterator[Place]:
+def _of(system: System, part: Component, known: dict[str, int]) -> Iterator[TakenOff]:
     signal, number = TAKEN_OFF.get(type(part).__name__, ("", ""))
     for names, _ in inputs(type(part)) if number else ():
         if signal in names:
             sign = -1.0 if getattr(part, "reversed", False) else 1.0
             place = parameter_place(system.numbered, part, number)
             mine = [known[one] for one in (f"{part.name}.{name}" for name in names) if one in known]
-            yield Place(mine[0] if mine else -1, place, sign, f"{part.name}.{number}")
+            yield TakenOff(mine[0] if mine else -1, place, sign, f"{part.name}.{number}")

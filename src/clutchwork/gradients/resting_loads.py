@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from clutchwork.base.memoize import memoize
 from clutchwork.declare.node import is_reference
 from clutchwork.declare.schema import inputs
-from clutchwork.gradients.references import Place, taken_off
+from clutchwork.gradients.references import TakenOff, taken_off
 from clutchwork.gradients.watched import Distance, distance, moved
 from clutchwork.model.parts import is_stop
 
@@ -28,7 +28,7 @@ class Follower(NamedTuple):
     contact: int
     name: str
     shared: int  # the shared state that presses it, -1 of none
-    taken: Place | None  # what is taken off that
+    taken: TakenOff | None  # what is taken off that
 
 
 def resting_loads(system: System, point: RunPoint, run: Run) -> Iterator[tuple[str, Mask]]:
