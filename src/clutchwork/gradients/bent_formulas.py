@@ -19,7 +19,7 @@ from clutchwork.results.forms import LOCKED
 
 if TYPE_CHECKING:
     from clutchwork.assembly.system import System
-    from clutchwork.gradients.runs import Run, RunPoint
+    from clutchwork.gradients.run_point import Run, RunPoint
 
 Array = NDArray[np.float64]
 Mask = NDArray[np.bool_]

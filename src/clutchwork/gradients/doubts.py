@@ -38,7 +38,8 @@ from clutchwork.gradients.knots import times_of
 from clutchwork.gradients.lines import Line
 from clutchwork.gradients.primal import SAME
 from clutchwork.gradients.resting_loads import resting_loads
-from clutchwork.gradients.runs import Run, RunPoint, Runs
+from clutchwork.gradients.run_point import Run, RunPoint
+from clutchwork.gradients.runs import Runs
 from clutchwork.gradients.staying import Staying
 from clutchwork.sweeps.outputs import AtTimes, When
 

@@ -20,7 +20,8 @@ from clutchwork.gradients.grazing import noted, passed_unseen, together
 from clutchwork.gradients.jerk import massless
 from clutchwork.gradients.lines import UNKNOWN, UNSEEN, Line, lines, unknown, without_derivatives
 from clutchwork.gradients.measures import Context, Measure, measures
-from clutchwork.gradients.runs import Run, RunPoint, Runs
+from clutchwork.gradients.run_point import Run, RunPoint
+from clutchwork.gradients.runs import Runs
 from clutchwork.gradients.settled import NEARER, STEP, Beside, Settling
 from clutchwork.gradients.task import GradientTask, GradientValues
 from clutchwork.gradients.words import Words

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from clutchwork.gradients.measures import Context, Measure, measures
 from clutchwork.gradients.primal import Primal
-from clutchwork.gradients.runs import Run
+from clutchwork.gradients.run_point import Run
 from clutchwork.gradients.traces import trace
 from clutchwork.sweeps.outputs import AtEnd, AtTimes, Output
 

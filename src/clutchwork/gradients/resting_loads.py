@@ -17,7 +17,7 @@ from clutchwork.model.parts import is_stop
 
 if TYPE_CHECKING:
     from clutchwork.assembly.system import System
-    from clutchwork.gradients.runs import Run, RunPoint
+    from clutchwork.gradients.run_point import Run, RunPoint
 
 Mask = NDArray[np.bool_]
 

@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
 from functools import cached_property, partial
-from typing import Any, NamedTuple
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -18,19 +18,20 @@ from clutchwork.gradients.bent_formulas import formulas
 from clutchwork.gradients.functional import Functional
 from clutchwork.gradients.knots import knots
 from clutchwork.gradients.plain import Detail, PlainRuns
-from clutchwork.gradients.primal import Knots, Primal
+from clutchwork.gradients.primal import Primal
 from clutchwork.gradients.refined import WithinSteps
 from clutchwork.gradients.resting_loads import followers
+from clutchwork.gradients.run_point import Run, RunPoint
 from clutchwork.gradients.signals_at import SignalsAt
-from clutchwork.gradients.steps import NO_STEPS, Steps
+from clutchwork.gradients.steps import NO_STEPS
 from clutchwork.gradients.task import GradientTask
 from clutchwork.gradients.watched import knots_and_end
-from clutchwork.gradients.words import Chart, Slopes, Words
+from clutchwork.gradients.words import Slopes, Words
 from clutchwork.results.forms import all_reads
 from clutchwork.results.gradient import NoGradient
 from clutchwork.run.simulation import told
 from clutchwork.sweeps.batch import CoreOutputs
-from clutchwork.sweeps.outputs import Extreme, Output
+from clutchwork.sweeps.outputs import Extreme
 
 Array = NDArray[np.float64]
 
@@ -40,39 +41,6 @@ TAPES = (1 << 28, 1 << 31)
 INTEGRALS = ("angle", "element_work", "contact_work", "prescribed_work", "supply_energy", "meter_energy")
 # multiples of it never come again, and spread evenly
 TURN = 0.6180339887498949
-NO_TANGENTS = np.zeros((0, 0, 0))
-
-
-class RunPoint(NamedTuple):
-    """A point with what is known of its run before it is differentiated."""
-
-    x: Array
-    sizes: Array  # of the numbers
-    chart: Chart
-    words: Array
-    slopes: Slopes
-    knots: Knots
-    steps: Steps
-    events: Array  # s, of a run without derivatives
-    by_rows: Mapping[Output, float]  # what rows of that run say: squared jerks, extremes in short steps
-    grid: Array  # s, instants of rows
-    notes: tuple[str, ...]  # on what is only just differentiable
-    looked_at: tuple[float, ...] = ()  # s, when it is looked at whether anything rests at a border
-
-    @property
-    def system(self) -> bytes:
-        """The bytes of the System."""
-        return self.words.tobytes()
-
-
-class Run(NamedTuple):
-    """A run, and the derivatives of what follows from it to first order."""
-
-    primal: Primal
-    slope: Callable[[Functional], Array]
-    is_forward: bool  # whether derivatives of the times of all events are known
-    notes: tuple[str, ...]
-    tangents: Array = NO_TANGENTS  # of the numbers of all rows by each number, of a forward run
 
 
 @dataclass(frozen=True, eq=False)

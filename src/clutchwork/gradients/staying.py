@@ -15,7 +15,8 @@ from clutchwork.base.classes import dataclass
 from clutchwork.gradients.grazing import APART, COMPONENT, DIFFERENCE, INDEX, KIND, TIME, pieces
 from clutchwork.gradients.knots import times_of
 from clutchwork.gradients.primal import SAME
-from clutchwork.gradients.runs import Run, RunPoint, Runs
+from clutchwork.gradients.run_point import Run, RunPoint
+from clutchwork.gradients.runs import Runs
 from clutchwork.gradients.steps import NO_STEPS
 from clutchwork.results.forms import LOCKED
 

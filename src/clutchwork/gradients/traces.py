@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from clutchwork.gradients.runs import Run
+from clutchwork.gradients.run_point import Run
 from clutchwork.sweeps.outputs import AtEnd, AtTimes
 
 Array = NDArray[np.float64]

@@ -12,7 +12,7 @@ from clutchwork.base.classes import dataclass
 from clutchwork.gradients.knots import times_of
 
 if TYPE_CHECKING:
-    from clutchwork.gradients.runs import Run, RunPoint
+    from clutchwork.gradients.run_point import Run, RunPoint
     from clutchwork.gradients.words import Chart
 
 Array = NDArray[np.float64]

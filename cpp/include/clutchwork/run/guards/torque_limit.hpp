@@ -155,6 +155,14 @@ template <class Form>
   }
 }
 
+/// The same where gears slip beside sets.
+template <class Form>
+CLUTCHWORK_INLINE void seek_handover(Form& form, Step<Form>& step, Hit& hit) {
+  if constexpr (Form::full) {
+    if (form.ws.held.n_sets > 0 && form.ws.loads.n_sliding > 0) find_handover(form, step, hit);
+  }
+}
+
 /// A locked contact at its limit, or one whose sides prescribed speeds part.
 struct TorqueLimit {
   static constexpr const char* name = "multiplier";
@@ -180,9 +188,7 @@ struct TorqueLimit {
   template <class Form>
   CLUTCHWORK_INLINE static void find(Form& form, Step<Form>& step, Hit& hit) {
     auto& ws = form.ws;
-    if constexpr (Form::full) {
-      if (ws.held.n_sets > 0 && ws.loads.n_sliding > 0) find_handover(form, step, hit);
-    }
+    seek_handover(form, step, hit);
     int* watched = ws.guard.limit;
     int n = 0;
     double m0 = infinity, m1 = infinity;
