@@ -437,7 +437,7 @@ def test_a_pump_whose_pressure_difference_jumps_through_zero_in_fixed_steps() ->
 @pytest.mark.parametrize("volume", [1e-6, 1e-5])
 @pytest.mark.parametrize("port", [1e-5, 1e-4])
 @pytest.mark.parametrize("rtol", [1e-6, 1e-9])
-def test_a_seal_holds_a_piston_whose_pressure_turns_round(seal: float, volume: float, port: float, rtol: float) -> None:
+def test_a_seal_holds_a_piston_whose_pressure_reverses(seal: float, volume: float, port: float, rtol: float) -> None:
     """The valve opens to its exhaust: held until the pressure has fallen by the friction both ways, then let go."""
     d, _ = bench()
     line = d.add(cw.OilVolume("line", volume=port))

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import random
 from typing import Any
 
 import numpy as np
@@ -109,8 +110,6 @@ def test_a_push_that_swings_within_the_valley_moves_nothing(amplitude: float) ->
 @pytest.mark.parametrize("seed", seeds(8))
 def test_a_car_that_coasts_into_a_valley_rests_at_its_bottom(seed: int) -> None:
     """Whatever lies beside it: each of both slopes is steeper than what the tyres hold."""
-    import random
-
     rng = random.Random(seed)
     left, right, c0 = -rng.uniform(0.03, 0.2), rng.uniform(0.03, 0.2), rng.uniform(0.01, 0.025)
     # flat places, so that round-off of the position is seen
@@ -154,18 +153,8 @@ def test_a_car_that_starts_at_a_corner_is_on_the_side_to_which_it_goes(push: flo
     assert at_end(run, "car.speed") == pytest.approx(wanted / MASS, abs=1e-9)
 
 
-def in_a_valley(push: object, **given: object) -> cw.Driveline:
-    """A car at the bottom of a valley that falls by 0.2 and rises by 0.4."""
-    d = cw.Driveline("corner")
-    car = d.mass("car", mass=100.0)
-    road = d.add(cw.Road("road", elevation=[(0.0, 10.0), (50.0, 0.0), (100.0, 20.0)], speed=car, initial_position=50.0))
-    d.add(cw.Vehicle("v", mass=car, rolling_coefficient=0.012, slope=road))
-    d.add(cw.Torque("push", shaft=car, torque=push, **given))
-    return d
-
-
 def test_a_slope_between_both_sides_has_no_derivative() -> None:
-    d = in_a_valley(50.0)
+    d = _car([(0.0, 10.0), (50.0, 0.0), (100.0, 20.0)], 0.012, 50.0, x=50.0)
     found = cw.differentiable(d, 1.0, of=["road.slope", "car.speed"], by="push.torque").gradient()
     assert np.isnan(found.matrix[0, 0])
     assert found.matrix[1, 0] == 0.0
@@ -174,14 +163,18 @@ def test_a_slope_between_both_sides_has_no_derivative() -> None:
 
 def test_a_freewheel_that_only_a_trial_would_overload_stays_sound() -> None:
     """At the foot of a hill of 0.55 a car is held by its freewheel: the whole slope would break that."""
-    d = cw.Driveline("foot")
-    car = d.mass("car", mass=100.0)
-    road = d.add(cw.Road("road", elevation=[(0.0, 0.0), (50.0, 0.0), (100.0, 27.5)], speed=car, initial_position=50.0))
-    d.add(cw.Vehicle("v", mass=car, rolling_coefficient=0.012, slope=road))
-    push = cw.Step(height=100.0, start=1.0)
-    d.add(cw.Torque("push", shaft=car, torque=push))
-    d.add(cw.SpragClutch("f", base=d.housing, follower=car, holding=300.0))
+    d = _car([(0.0, 0.0), (50.0, 0.0), (100.0, 27.5)], 0.012, cw.Step(height=100.0, start=1.0), x=50.0)
+    d.add(cw.SpragClutch("f", base=d.housing, follower=d.nodes[0], holding=300.0))
     run = d.simulate(2.0)
     assert run.status == "done"
     assert not [event for event in run.events if event.cause == "fault"]
     assert np.abs(run["car.speed"]).max() < 1e-9
+
+
+def test_a_road_of_other_heights_is_not_taken_for_its_corner() -> None:
+    """Its slopes are those of the point that is looked at."""
+    d = _car([(0.0, 0.0), (50.0, 5.0), (100.0, 20.0)], 0.012, 500.0, x=10.0)
+    f = cw.differentiable(d, 1.0, of=["v.rolling.torque", "road.slope"], by="road.elevation.values[2]")
+    found = f.gradient(f.x0 + 1.0)
+    assert found.problems == ()
+    np.testing.assert_allclose(found.matrix[1], 1.0 / 50.0, rtol=1e-9)

@@ -322,6 +322,10 @@ class Component(Element):
         """The same by what the speed of each shaft is at the start, given or not."""
         return self.initial_states()
 
+    def takes_off(self) -> tuple[str, str]:
+        """The input below which it does nothing, and the number that says where; "" for none."""
+        return "", ""
+
     def begins_with(self) -> str:
         """Of a process: the input whose value its first state has at the start, "" where that is given."""
         return ""

@@ -59,6 +59,9 @@ class PlateContact(Contact):
     fault_signal: SignalLike | None = signal("1", "triggers the fault above 0.5", default=None, otherwise=0.0)
     fault_time: SignalLike | None = signal("1", "triggers it above 0.5 as well", default=None, otherwise=0.0)
 
+    def takes_off(self) -> tuple[str, str]:
+        return "pressure", "threshold"
+
     def fault_warning(self) -> str:
         """What to warn of when its fault is triggered."""
         return self.fault.replace("_", " ") if self.report == "warning" else ""

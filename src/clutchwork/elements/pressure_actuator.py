@@ -37,6 +37,9 @@ class PressureActuator(Component):
         fault = f"is {self.initial_pressure:g} Pa, but the piston is not filled"
         return [("initial_pressure", fault, f"give {say('filled = true', 'filled=True')}")]
 
+    def takes_off(self) -> tuple[str, str]:
+        return "command", "spring"
+
     def initial_states(self) -> tuple[float, ...]:
         """Pressure at the start [Pa]; of an empty piston negative by what it has to fill."""
         return (self.initial_pressure if self.filled else -self.fill_time * self.fill_pressure / self.lag,)

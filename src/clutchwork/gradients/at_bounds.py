@@ -85,7 +85,7 @@ def limited(system: System) -> tuple[int, ...]:
 
 
 def _has_table(contact: Component) -> bool:
-    """Whether its losses are those of a gear, which has some of its own at any speed."""
+    """Whether its capacity follows a table of losses, as that of a gear does."""
     return any(item.name == "loss_table" for item, _ in specs(type(contact), "numbers"))
 
 
@@ -93,7 +93,9 @@ def _ideal(chart: Chart, words: Array, system: System, contact: Component) -> Pl
     """Words of losses of a contact that has none, or has none at a speed."""
     begin, (first, _) = chart.words_in("params")[0], chart.words_in("points")
     if not _has_table(contact):
-        own = [begin + parameter_place(system.numbered, contact, name) for name in ("drive", "coast")]
+        # shares of the load have no unit
+        shares = [item.name for item, spec in specs(type(contact), "param") if spec.unit == "1"]
+        own = [begin + parameter_place(system.numbered, contact, name) for name in shares]
         return np.array(own) if not words[own].any() else np.zeros(0, dtype=np.intp)
     place = begin + parameter_place(system.numbered, contact, "loss_table")
     start, count = (int(one) for one in words[place : place + 2])

@@ -220,7 +220,7 @@ class Doubts:
             yield Doubt(why, every, numbers)
         for why in holding_nothing(self.runs.task.system, self.run.primal):
             yield Doubt(why, every, self._all)
-        for why, columns in resting_at_corners(self.runs.task.system, self.run.primal):
+        for why, columns in resting_at_corners(self.runs.task.system, self.point, self.run.primal):
             open_ = np.array([np.isin(line.columns, columns).any() for line in self.lines])
             yield Doubt(why, open_, self._all, is_closed=True)
         for why, numbers in self._resting():

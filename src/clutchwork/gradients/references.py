@@ -19,9 +19,6 @@ if TYPE_CHECKING:
 
 Array = NDArray[np.float64]
 
-# what is taken off a signal, by the kind of the owner: one of its inputs, and the number
-TAKEN_OFF = {"PressureActuator": ("command", "spring"), "PlateContact": ("pressure", "threshold")}
-
 
 class Reference(NamedTuple):
     """A value at which a signal begins to act."""
@@ -69,7 +66,7 @@ def taken_off(system: System) -> tuple[TakenOff, ...]:
 
 
 def _of(system: System, part: Component, known: dict[str, int]) -> Iterator[TakenOff]:
-    signal, number = TAKEN_OFF.get(type(part).__name__, ("", ""))
+    signal, number = part.takes_off()
     for names, _ in inputs(type(part)) if number else ():
         if signal in names:
             sign = -1.0 if getattr(part, "reversed", False) else 1.0

@@ -223,15 +223,16 @@ concept SwitchingProcess =
       { E::cross(p, at, 0, state) } -> std::same_as<int>;
     };
 
-/// Where a process is that turns at a place: the states that are the place and what turns there, the input that is the
-/// speed, the piece before the place (the one behind it is the next), the place, and what turns on either side of it.
+/// Where a process is whose force jumps at a place: the states that are the place and what jumps there, the input that
+/// is the speed, the piece before the place (the one behind it is the next), the place, and what jumps on either side
+/// of it.
 template <class T>
 struct Corner {
   int moves, turns, speed, piece;
   T place, before, behind;
 };
 
-/// Process of pieces with corners at which what it follows may come to rest. Two states, a place and what turns there.
+/// Process of pieces with corners at which what it follows may come to rest. Two states, a place and what jumps there.
 template <class E>
 concept CorneredProcess =
     requires(const typename E::template Params<double>& p, const At<double>& at, Corner<double>& found) {

@@ -123,7 +123,7 @@ int way_from(Workspace<T>& ws, const AtCorner<T>& at) {
   return leads > noise ? forward : leads < -noise ? backward : 0;
 }
 
-/// The decision for one value of what turns, on one piece, after others that were tried. `running`: it was made; then
+/// The decision for one value of what jumps, on one piece, after others that were tried. `running`: it was made; then
 /// it leads that way.
 template <class T, class Decide>
 Status decide_with(Workspace<T>& ws, const AtCorner<T>& at, const T& turned, int piece, Decide&& decide, int& way) {
@@ -172,7 +172,7 @@ bool find_balance(const AtCorner<T>& at, Try&& leads, T& balance) {
   return true;
 }
 
-/// Modes where both sides of a corner lead back to it: it rests with what turns between them. If nothing holds it
+/// Modes where both sides of a corner lead back to it: it rests with what jumps between them. If nothing holds it
 /// there, those of the present value.
 template <class T, class Decide>
 Status settle_between(Workspace<T>& ws, const AtCorner<T>& at, const T& present, int piece, Decide&& decide) {
@@ -194,7 +194,7 @@ Status settle_between(Workspace<T>& ws, const AtCorner<T>& at, const T& present,
   return decide_with(ws, at, rests, piece, decide, way);
 }
 
-/// Whether what breaks away goes that way under a little more of what turns: others do not hold it.
+/// Whether what breaks away goes that way under a little more of what jumps: others do not hold it.
 template <class T, class Decide>
 bool gives_way(Workspace<T>& ws, const AtCorner<T>& at, const T& present, int piece, int side, Decide&& decide) {
   constexpr double little = 1e-3;
@@ -203,7 +203,7 @@ bool gives_way(Workspace<T>& ws, const AtCorner<T>& at, const T& present, int pi
   return decide_with(ws, at, T(value(present) - more), piece, decide, way) == Status::running && way == side;
 }
 
-/// The modes are decided; where they lead over the corner they are decided with what turns behind it.
+/// The modes are decided; where they lead over the corner they are decided with what jumps behind it.
 /// docs/theory/vehicle.md, rule 1
 template <class T, class Decide>
 Status settle_at_corner(Workspace<T>& ws, const AtCorner<T>& at, Decide&& decide) {
